@@ -101,7 +101,6 @@ ObservedLoads Adapter::predict(const Candidate& candidate, std::vector<std::stri
     p.cut = std::move(loads.cut);
     p.holes = loads.holes;
     p.holes.surface_mm2 = 1;  // the surface is not judged
-    p.slender_tools = std::move(loads.slender_tools);
   }
   doubts = simulate::doubts(job_, candidate.program, p);
   return observe({job_, candidate.program, candidate.map, p.cut.loads, p.surface}, *cells_, loads_);

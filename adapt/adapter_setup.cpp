@@ -9,19 +9,18 @@
 
 #include "adapt/adapter.h"
 #include "base/units.h"
+#include "checks/plausibility.h"
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
 #include "simulate/region.h"
-#include "simulate/travel.h"
 
 namespace camber::adapt {
 namespace {
 
 /// What is known to be refused is refused before the long work.
 void check_given(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
-  simulate::check_program(job, program, diagnostics);
+  checks::check_program(job, program, diagnostics);
   simulate::refuse_rotary_motion(program.rotary.get(), program.text, "adapt chooses feeds of X, Y and Z", diagnostics);
-  simulate::check_travel(job, program, diagnostics);
 }
 
 /// Length of the cells of each move: a fiftieth of the tool's diameter; the whole move where the control stops at the

@@ -39,7 +39,7 @@ struct StampError {
 std::vector<StampError> worst_errors(std::span<const removal::SurfacePoint> surface, std::size_t stamps) {
   std::vector<StampError> out(stamps);
   for (const removal::SurfacePoint& p : surface) {
-    if (p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= stamps) continue;
+    if (!p.valid || p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= stamps) continue;
     StampError& worst = out[static_cast<std::size_t>(p.machined_stamp)];
     if (std::abs(p.error_mm) <= std::abs(static_cast<double>(worst.deflection_mm + worst.contour_mm))) continue;
     worst = {static_cast<float>(p.error_mm - p.contour_mm), static_cast<float>(p.contour_mm)};

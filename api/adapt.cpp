@@ -8,6 +8,7 @@
 #include "api/job.h"
 #include "api/run.h"
 #include "base/units.h"
+#include "machine/assumptions.h"
 #include "report/adapt_summary.h"
 
 namespace camber {
@@ -56,7 +57,7 @@ AdaptResult v0::adapt(const Job& job, const AdaptOptions& options, const RunOpti
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done);
     result.diagnostics = found.all();
-    result.json = report::adapt_json(done, *of.adapt, compute_s);
+    result.json = machine::with_assumptions(report::adapt_json(done, *of.adapt, compute_s), machine::assumptions(of));
   });
   return result;
 }

@@ -4,6 +4,7 @@
 #include "api/job.h"
 #include "api/program.h"
 #include "api/run.h"
+#include "machine/assumptions.h"
 
 namespace camber {
 namespace {
@@ -51,6 +52,10 @@ CheckResult checked(const Program& program, const Diagnostics& before, const mac
       for (auto& d : api::in_order(found.all())) ordered.add(std::move(d));
       run.settle(ordered);
       result = result_of(program.path(), done, ordered);
+      const auto assumed = job       ? machine::assumptions(*job)
+                           : machine ? machine::assumptions(*machine)
+                                     : std::vector<std::string>{};
+      result.json = machine::with_assumptions(std::move(result.json), assumed);
     } catch (const InputError& e) {
       throw InputError(api::in_order(e.diagnostics()));
     }

@@ -9,6 +9,7 @@
 #include "api/error_figures.h"
 #include "api/job.h"
 #include "api/run.h"
+#include "machine/assumptions.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
 
@@ -95,7 +96,8 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done.result, done.job.compensation);
     result.diagnostics = found.all();
-    result.json = report::compensate_json(done.result, done.job.compensation, compute_s);
+    result.json = machine::with_assumptions(report::compensate_json(done.result, done.job.compensation, compute_s),
+                                            machine::assumptions(done.job));
   });
   return result;
 }

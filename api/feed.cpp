@@ -6,6 +6,7 @@
 #include "api/program.h"
 #include "api/run.h"
 #include "base/units.h"
+#include "machine/assumptions.h"
 
 namespace camber {
 namespace {
@@ -60,7 +61,7 @@ FeedResult v0::feed(const Program& program, const Machine& machine, const FeedOp
     result.cutting_time_s = summary.cutting_time_s;
     result.blocks = summary.blocks;
     result.diagnostics = found.all();
-    result.json = api::feed_json(summary);
+    result.json = machine::with_assumptions(api::feed_json(summary), machine::assumptions(machine.impl().machine));
   });
   return result;
 }

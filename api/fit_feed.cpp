@@ -17,7 +17,8 @@ Machine machine_of(const machine::Machine& fitted) {
 std::vector<FitParameter> parameters_of(const std::vector<calib::FitParameter>& parameters) {
   std::vector<FitParameter> out;
   out.reserve(parameters.size());
-  for (const auto& p : parameters) out.push_back({p.name, p.value, p.unit, p.std_error, p.note, p.written});
+  for (const auto& p : parameters)
+    out.push_back({p.name, p.value, p.unit, p.std_error, p.note, p.written, p.stretches, p.changed_from});
   return out;
 }
 
@@ -38,7 +39,7 @@ FitFeedResult v0::fit_feed(const std::vector<FeedTrace>& traces, const Machine& 
     const api::FeedRuns runs = api::read_runs(traced, options.columns, start.impl().machine, found);
     run.settle(found);
     run.show("fitting", 0);
-    const api::FeedFit fit = api::fit_runs(runs, start.impl().machine);
+    const api::FeedFit fit = api::fit_runs(runs, start.impl().machine, {.update = options.update});
     std::visit(
         [&](const auto& fitted) {
           result.machine = machine_of(fitted.machine);

@@ -11,8 +11,11 @@
 #include "api/predict_result.h"
 #include "api/run.h"
 #include "base/output_file.h"
+#include "machine/assumptions.h"
 #include "report/forces_csv.h"
+#include "report/mesh_file.h"
 #include "report/report_data.h"
+#include "report/spindle_load.h"
 #include "report/summary.h"
 #include "simulate/moves_of_axes.h"
 
@@ -43,7 +46,8 @@ ForceRow row_of(const report::ForceRow& r) {
           .h_mean_mm = r.chip_mean_mm,
           .specific_energy_MPa = r.specific_energy_MPa,
           .block = static_cast<std::int64_t>(r.line),
-          .f_axial_max_N = r.axial_max_N};
+          .f_axial_max_N = r.axial_max_N,
+          .valid = r.valid};
 }
 
 std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
@@ -52,8 +56,19 @@ std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
   for (std::size_t i = 0; i < points.count; ++i) {
     const report::FormErrorPoint p = points.at(i);
     out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(), p.error_um,
-                   p.deflection_um(), p.contour_um, p.total_error_um, p.model_error_um, p.area_mm2, p.block, p.tool});
+                   p.deflection_um(), p.contour_um, p.total_error_um, p.model_error_um, p.area_mm2, p.block, p.tool,
+                   p.valid});
   }
+  return out;
+}
+
+Mesh mesh_of(const report::SurfaceMesh& mesh) {
+  Mesh out;
+  out.points.reserve(mesh.vertices.size());
+  for (const report::SurfaceSample& v : mesh.vertices)
+    out.points.push_back({v.place_mm.x(), v.place_mm.y(), v.place_mm.z(), v.normal.x(), v.normal.y(), v.normal.z(),
+                          v.error_um, v.error_um - v.contour_um, v.contour_um, v.block});
+  for (const auto& t : report::triangles_of(mesh)) out.triangles.push_back({t[0], t[1], t[2]});
   return out;
 }
 
@@ -74,7 +89,7 @@ PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepare
   const simulate::SimulatedProgram& program = prepared.setup.program;
   PredictResult out{.machine_time_s = program.feed.time_s,
                     .cutting_time_s = program.feed.cutting_time_s,
-                    .chips_mm3 = p.cut.chip_mm3,
+                    .chips_mm3 = report::chips_mm3(p),
                     .stock_mm3 = p.cut.stock_mm3,
                     .form_error_um = api::figures_of(p.form_error_um),
                     .deflection_um = api::figures_of(p.deflection_um),
@@ -83,8 +98,10 @@ PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepare
                     .form_error = points_of(report::form_error_points(program, p, prepared.traced_run())),
                     .doubts = api::doubts_of(job, program, p)};
   if (prepared.traced) out.trace = comparison_of(*prepared.traced);
-  for (const auto& load : p.cut.loads) out.force_max_N = std::max(out.force_max_N, load.lateral_max_N);
+  out.force_max_N = report::largest_force_N(p);
   report::for_each_force_row(job, program, p, [&](const report::ForceRow& row) { out.forces.push_back(row_of(row)); });
+  for (const report::SpindleLoad& l : report::spindle_loads(job, program, p))
+    out.spindle_load.push_back({l.tool, static_cast<std::int64_t>(l.line), l.power_W, l.torque_Nm});
   return out;
 }
 
@@ -100,6 +117,7 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
         .forces_at = options.forces_at,
         .trace = options.trace,
         .columns = options.columns,
+        .meshes = options.meshes,
         .progress = [&](const std::string& what, std::optional<double> share) { run.show(what, share.value_or(0)); }};
     api::PreparedJob prepared = api::prepare(job, request, found);
     run.settle(found);
@@ -110,6 +128,11 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     run.settle(of_cut);
     const simulate::SimulatedProgram& program = prepared.setup.program;
     result = api::result_of(job, prepared, prediction);
+    if (options.meshes) {
+      result.machined_mesh = mesh_of(report::machined_mesh(*prediction.machined));
+      result.error_mesh = mesh_of(report::error_mesh(
+          report::form_error_points(program, prediction, prepared.traced_run()), job.simulation.voxel_mm));
+    }
     if (options.feed && prepared.traced)
       api::points_sink(program.moves, result.feed)(prepared.traced->samples);
     else if (options.feed && program.rotary)
@@ -118,7 +141,9 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
     else if (options.feed)
       feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    result.json = report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts);
+    result.json = machine::with_assumptions(
+        report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts),
+        machine::assumptions(job));
     result.diagnostics = found.all();
     if (request.folder.empty()) return;
     Diagnostics failed;

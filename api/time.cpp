@@ -5,6 +5,7 @@
 #include "api/program.h"
 #include "api/run.h"
 #include "base/units.h"
+#include "machine/assumptions.h"
 
 namespace camber {
 namespace {
@@ -67,6 +68,7 @@ TimeResult v0::time(const Program& program, const Machine& machine, const TimeOp
                           found);
     run.settle(found);
     result = result_of(timed.report, found);
+    result.json = machine::with_assumptions(std::move(result.json), machine::assumptions(machine.impl().machine));
   });
   return result;
 }

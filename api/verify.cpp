@@ -5,6 +5,7 @@
 #include "api/commands/verify.h"
 #include "api/error_figures.h"
 #include "api/run.h"
+#include "machine/assumptions.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
 
@@ -42,7 +43,8 @@ VerifyResult v0::verify(const std::string& place, const RunOptions& run_options)
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(emitted, verified);
     result.diagnostics = found.all();
-    result.json = report::verify_json(verified.result, verified.job.compensation, compute_s);
+    result.json = machine::with_assumptions(report::verify_json(verified.result, verified.job.compensation, compute_s),
+                                            machine::assumptions(verified.job));
   });
   return result;
 }

@@ -74,8 +74,12 @@ std::vector<Channel> read_twincat_channels(const SourceText& source, const Colum
 /// missing attribute is no sample. Times are seconds. Throws InputError [sinumerik-xml].
 std::vector<Channel> read_sinumerik_channels(const SourceText& source);
 
-/// Reads any of the three: XML begins with "<", TwinCAT has a line that begins with Name, the rest are lines of
-/// numbers.
+/// Recording of a Sinumerik Edge: JSON of Header and Payload, whose messages HFData are rows of the header's signals.
+/// Times are the counter CYCLE times CycleTimeMs: rows may be missing. Throws InputError [sinumerik-edge].
+std::vector<Channel> read_edge_channels(const SourceText& source);
+
+/// Reads any of the four: XML begins with "<", JSON with "{", TwinCAT has a line that begins with Name, the rest are
+/// lines of numbers.
 ServoTrace read_mapped_trace(const std::string& path, const ColumnMap& map, Diagnostics& diagnostics);
 
 }  // namespace camber::calib

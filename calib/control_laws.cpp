@@ -110,9 +110,11 @@ bool times_contradict_ramps(const std::vector<TimedLines>& data, const LimitFit&
 
 LimitFit refit(const std::vector<TimedLines>& data, const Machine& machine, const LimitFit& from, int max_iterations) {
   std::vector<LimitParameter> parameters = limit_parameters(machine, any_logged(data));
-  for (LimitParameter& p : parameters)
-    for (const LimitParameter& q : from.parameters)
-      if (p.name == q.name) p.start = std::clamp(q.fitted.value, p.least * 1.001, p.most * 0.999);
+  for (LimitParameter& p : parameters) {
+    const auto same = std::ranges::find(from.parameters, p.name, &LimitParameter::name);
+    const double start = same != from.parameters.end() ? same->fitted.value : p.get(machine);
+    if (std::isfinite(start)) p.start = std::clamp(start, p.least * 1.001, p.most * 0.999);
+  }
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (parameters[i].name == "control.corner.stop_time_ms") scan_start(data, machine, parameters, i);
   return fit_limits(data, machine, std::move(parameters), max_iterations, false);
@@ -170,12 +172,14 @@ double held_out_percent(const std::vector<TimedLines>& data, const Machine& mach
 }
 
 std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const Machine& start,
-                               const TracedAccelerations& acceleration, int max_iterations, std::size_t& best) {
+                               const TracedAccelerations& acceleration, int max_iterations, std::size_t& best,
+                               bool only_own) {
   std::vector<TriedLaw> tried;
   best = 0;
   const bool overlap = blocks_overlap(data, start);
   for (const auto& [name, machine] : machines_of_each_law(start)) {
     if (overlap && machine.control.corner.law != CornerLaw::blend) continue;
+    if (only_own && !tried.empty()) break;
     LimitFit fit = fit_law(data, machine, acceleration, max_iterations);
     const double percent = held_out_percent(data, fit.whole);
     tried.push_back({name, std::move(fit), percent});
@@ -190,24 +194,29 @@ std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const Machin
   return tried;
 }
 
-LimitFit try_angles(const std::vector<TimedLines>& data, const LimitFit& standing, std::vector<TriedLaw>& tried,
-                    int max_iterations) {
+LimitFit try_details(const std::vector<TimedLines>& data, const LimitFit& standing, std::vector<TriedLaw>& tried,
+                     int max_iterations) {
   LimitFit best = standing;
   const auto consider = [&](const std::string& name, const Machine& machine) {
-    LimitFit fit = refit(data, machine, standing, max_iterations);
+    LimitFit fit = refit(data, machine, best, max_iterations);
     tried.push_back({name, fit, held_out_percent(data, fit.whole)});
     if (fit.held_out_cost < (1 - kRicherBetterBy) * best.held_out_cost) best = std::move(fit);
   };
+  if (standing.whole.control.corner.law == CornerLaw::speed_difference) {
+    Machine m = standing.whole;
+    for (machine::Axis& axis : m.axis) axis.speed_difference_mm_per_s = m.control.corner.speed_difference_mm_per_s;
+    consider("  and a limit for each axis", m);
+  }
   const std::set<double> angles = corner_angles(data);
   for (auto low = angles.begin(), high = std::next(low); high != angles.end(); ++low, ++high) {
     if (*low < kSlightRad || *high > kBluntRad || *high - *low < kWideGapRad) continue;
-    Machine m = standing.whole;
+    Machine m = best.whole;
     m.control.corner.stop_angle_rad = (*low + *high) / 2;
     consider(fmt::format("  and a stop above {:.0f} degrees", deg_from_rad(m.control.corner.stop_angle_rad)), m);
   }
   const auto slight = angles.lower_bound(kSlightRad);
   if (slight != angles.end() && *slight < kThresholdRad) {
-    Machine m = standing.whole;
+    Machine m = best.whole;
     m.control.corner.threshold_rad = kThresholdRad;
     consider("  and no corner under 5 degrees", m);
   }

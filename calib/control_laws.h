@@ -40,13 +40,16 @@ double held_out_percent(const std::vector<TimedLines>& data, const machine::Mach
 
 /// Tries every law; the first is that of `start`. Where blocks overlap, rounding alone, the law that such a control has
 /// for them. Index of the best: the least held-out cost, but the law of `start` unless another is better by a
-/// thousandth, and the exact stop, which has no number, unless another is better by 5 %.
+/// thousandth, and the exact stop, which has no number, unless another is better by 5 %. only_own: that of `start`
+/// alone.
 std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const machine::Machine& start,
-                               const TracedAccelerations& acceleration, int max_iterations, std::size_t& best);
+                               const TracedAccelerations& acceleration, int max_iterations, std::size_t& best,
+                               bool only_own = false);
 
-/// Tries, under the law of `standing`, a stop at corners sharper than each wide gap between the corners of the
-/// programs, and corners under 5 degrees passed as none. Keeps what lowers the held-out cost by 5 %.
-LimitFit try_angles(const std::vector<TimedLines>& data, const LimitFit& standing, std::vector<TriedLaw>& tried,
-                    int max_iterations);
+/// Tries, under the law of `standing`, a permitted speed difference for each axis, a stop at corners sharper than each
+/// wide gap between the corners of the programs, and corners under 5 degrees passed as none, one after the other. Keeps
+/// what lowers the held-out cost by 5 %.
+LimitFit try_details(const std::vector<TimedLines>& data, const LimitFit& standing, std::vector<TriedLaw>& tried,
+                     int max_iterations);
 
 }  // namespace camber::calib

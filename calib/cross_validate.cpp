@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/units.h"
+
 namespace camber::calib {
 namespace {
 
@@ -21,6 +23,9 @@ double rotary_drive_rms(const ServoTrace& rotary, int axis, const machine::Rotar
   drive.position_gain_per_s = model.position_gain_per_s;
   drive.velocity_lag_s = model.velocity_lag_s;
   drive.feed_forward_percent = model.feed_forward_percent;
+  drive.acceleration_feed_forward_s = model.acceleration_feed_forward_s;
+  drive.dead_time_s = model.dead_time_s;
+  drive.backlash_mm = deg_from_rad(model.backlash_rad);
   drive.filter_s = model.filter_s;
   return drive_rms_mm({&rotary}, axis, drive);
 }

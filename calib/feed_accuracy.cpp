@@ -14,6 +14,7 @@ namespace camber::calib {
 namespace {
 
 constexpr double kPartPercent = 0.5;
+constexpr double kMoves = 2e-3;  // mm or degrees between two samples
 
 /// What trace and model have in common.
 struct Record {
@@ -107,6 +108,20 @@ std::vector<Window> windows_of(const Record& r, const std::vector<Part>& parts) 
   return windows;
 }
 
+/// Leaves out parts of which the trace has a piece only, since it begins or ends in motion, or misses samples in them.
+void drop_incomplete(const ServoTrace& trace, std::vector<Window>& windows) {
+  const auto moves = [&](std::size_t k) {
+    const std::size_t from = k > 0 ? k - 1 : k, to = std::min(k + 1, trace.size() - 1);
+    return joint_step(trace, from, to) > kMoves;
+  };
+  for (Window& w : windows)
+    for (const Stretch& s : trace.stretches) {
+      const bool missing = s.first > w.first && s.first < w.commanded_end;
+      const bool begins = s.first == w.first && moves(w.first), ends = s.end == w.commanded_end && moves(s.end - 1);
+      if (w.commanded_end > w.first && (missing || begins || ends)) w.end = w.commanded_end = w.first;
+    }
+}
+
 double speed_at(const Record& r, const Window& w, std::size_t k, std::size_t half) {
   const std::size_t from = std::max(k, w.first + half) - half, to = std::min(k + half, w.end - 1);
   return to > from ? (r.actual_mm[to] - r.actual_mm[from]).norm() / (static_cast<double>(to - from) * r.period_s) : 0;
@@ -143,14 +158,16 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-double motion_time(const Record& r) {
+/// `t_s`: of the samples; empty: they are a period apart.
+double motion_time(const Record& r, const std::vector<double>& t_s) {
   std::size_t first = r.command_mm.size(), last = 0;
   for (std::size_t k = 1; k < r.command_mm.size(); ++k) {
     if (r.command_mm[k] == r.command_mm[k - 1]) continue;
     first = std::min(first, k - 1);
     last = k;
   }
-  return last > first ? static_cast<double>(last - first) * r.period_s : 0;
+  if (last <= first) return 0;
+  return t_s.empty() ? static_cast<double>(last - first) * r.period_s : t_s[last] - t_s[first];
 }
 
 /// Time of each line at its programmed feed, by its 1-based number.
@@ -268,7 +285,8 @@ FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpret
   const std::vector<double> line_s = programmed_line_times_s(program, machine);
   FeedAccuracy result;
   if (trace.line.empty()) return result;
-  const auto windows = windows_of(traced, parts);
+  auto windows = windows_of(traced, parts);
+  drop_incomplete(trace, windows);
   std::vector<double> all;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (windows[p].end < windows[p].first + 3) continue;
@@ -299,12 +317,14 @@ FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& pr
   const Record traced = record_of(trace, program, machine);
   const Record model = record_of(program, machine);
   FeedAccuracy result;
-  result.time_trace_s = motion_time(traced);
-  result.time_model_s = motion_time(model);
+  result.time_trace_s = motion_time(traced, trace.t_s);
+  result.time_model_s = motion_time(model, {});
   if (result.time_trace_s > 0) result.time_error_percent = 100 * (result.time_model_s / result.time_trace_s - 1);
   if (trace.line.empty()) return result;
 
-  const auto in_trace = windows_of(traced, parts), in_model = windows_of(model, parts);
+  auto in_trace = windows_of(traced, parts);
+  const auto in_model = windows_of(model, parts);
+  drop_incomplete(trace, in_trace);
   std::vector<double> all;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (in_trace[p].end < in_trace[p].first + 3 || in_model[p].end < in_model[p].first + 3) continue;
@@ -324,6 +344,14 @@ FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& pr
   if (!result.parts.empty()) result.part_time_error_percent /= static_cast<double>(result.parts.size());
   result.speed_rms_percent = root_mean_square(all);
   result.speed_p95_percent = percentile_95(all);
+  if (result.parts.size() == parts.size() || result.parts.empty()) return result;
+  // The trace has a piece of the program: the times of its whole parts are what can be compared.
+  result.time_trace_s = result.time_model_s = 0;
+  for (const PartAccuracy& part : result.parts) {
+    result.time_trace_s += part.time_trace_s;
+    result.time_model_s += part.time_model_s;
+  }
+  result.time_error_percent = 100 * (result.time_model_s / result.time_trace_s - 1);
   return result;
 }
 

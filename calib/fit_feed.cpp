@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "base/units.h"
 #include "calib/fit_limits.h"
@@ -11,9 +12,11 @@
 #include "calib/fit_smoothing.h"
 #include "calib/logged_lines.h"
 #include "calib/rotary_lines.h"
+#include "calib/top_speed.h"
 #include "calib/traced_acceleration.h"
 #include "feedmodel/fitted_range.h"
 #include "feedmodel/joint_map.h"
+#include "machine/set_number.h"
 
 namespace camber::calib {
 namespace {
@@ -21,11 +24,13 @@ namespace {
 using machine::Machine;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-constexpr double kPlateauFraction = 0.999;  // of the highest speed
-constexpr double kPlateauS = 0.02;          // at least this long at it, or it was just passed through
+constexpr std::size_t kRestSamples = 20;  // a command that stands for longer rests
+constexpr double kBelowHeld = 0.99;       // of a speed that an axis holds: a limit below it is wrong
+constexpr double kSamePeriod = 0.02;      // two periods that differ by less are one
 constexpr std::uint32_t kMaxBlocksApart = 60;
 constexpr double kSameWindow = 0.3;        // two estimates of one window differ by less than this fraction of it
 constexpr int kListIterations = 6;         // for each value of a list
+constexpr double kMoves = 2e-3;            // mm or degrees between two samples
 constexpr double kNoLengthMm = 1e-9;       // rounding of numbers, not a move
 constexpr double kSettledFraction = 1e-3;  // gain of cost under which a richer law is not worth it
 
@@ -38,6 +43,52 @@ void set_control_defaults(machine::Control& control) {
   if (control.lookahead_blocks == 0) control.lookahead_blocks = control.kind.usual_lookahead_blocks;
   if (control.corner.short_line_time_s == 0)
     control.corner.short_line_time_s = control.kind.usual_short_line_periods * control.period_s;
+}
+
+/// How long a command stands while axes move: the median, in samples.
+double samples_of_a_command(const std::vector<const ServoTrace*>& traces) {
+  std::vector<std::size_t> lengths;
+  for (const ServoTrace* trace : traces) {
+    if (trace->has_command == std::array<bool, 3>{}) continue;
+    for (const Stretch& s : trace->stretches) {
+      std::size_t length = 1;
+      for (std::size_t k = s.first + 1; k < s.end; ++k, ++length) {
+        bool changes = trace->command_mm[k] != trace->command_mm[k - 1];
+        if (!trace->rotary_command_deg.empty())
+          changes = changes || trace->rotary_command_deg[k] != trace->rotary_command_deg[k - 1];
+        if (!changes) continue;
+        if (length < kRestSamples) lengths.push_back(length);
+        length = 0;
+      }
+    }
+  }
+  if (lengths.empty()) return 1;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return static_cast<double>(*middle);
+}
+
+/// The interpolation period is not the step of the log: it is how often commands change, where the log is fine enough
+/// to show it, and else what the start file says.
+void set_period(FitFeedResult& result, const std::vector<const ServoTrace*>& traces) {
+  if (traces.empty()) return;
+  double step_s = machine::kNoLimit;
+  for (const ServoTrace* trace : traces) step_s = std::min(step_s, trace->period_s);
+  const double samples = samples_of_a_command(traces), seen_s = samples * step_s;
+  double& period_s = result.machine.control.period_s;
+  const bool shows = samples > 1 || seen_s < (1 - kSamePeriod) * period_s;
+  if (!shows && std::abs(seen_s / period_s - 1) < kSamePeriod) return;
+  if (shows) period_s = seen_s;
+  result.parameters.push_back(
+      {"control.period_ms", 1000 * period_s, "ms", std::nullopt,
+       shows ? "how often the commands change"
+             : fmt::format("start value kept; the traces have a sample every {:.4g} ms", 1000 * step_s),
+       shows});
+}
+
+bool moves_at(const ServoTrace& trace, std::size_t k) {
+  const std::size_t from = k > 0 ? k - 1 : k, to = std::min(k + 1, trace.size() - 1);
+  return joint_step(trace, from, to) > kMoves;
 }
 
 /// Commanded time of each part: first to last sample of its lines.
@@ -60,11 +111,45 @@ std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<Pa
       if (i > last + 1) whole = false;  // the control waited inside the part
       last = i;
     }
-    for (const Stretch& s : trace.stretches) whole = whole && !(s.first > first && s.first <= last);
+    for (const Stretch& s : trace.stretches) {
+      whole = whole && !(s.first > first && s.first <= last);
+      // A stretch that begins or ends in motion may have only a piece of the part.
+      whole = whole && !(s.first == first && moves_at(trace, first)) && !(s.end == last + 1 && moves_at(trace, last));
+    }
     if (whole) times[p] = static_cast<double>(last + 1 - first) * trace.period_s;
     k = last + 1;
   }
   return times;
+}
+
+/// A run that the trace has in part only, since it begins or ends in motion or a part of it is missing, is cut in
+/// pieces of a tenth of its lines, in place of the whole: what lies inside the trace tells as much.
+void add_pieces(const FeedRun& run, TimedLines& lines) {
+  constexpr std::uint32_t kPieces = 10;
+  constexpr std::size_t kKeepBackEvery = 3;
+  TimedLines out;
+  for (std::size_t p = 0; p < lines.parts.size(); ++p) {
+    const Part& part = lines.parts[p];
+    const std::uint32_t count = part.line_last - part.line_first + 1;
+    std::vector<Part> pieces{part};
+    if (lines.time_s[p] == 0 && count >= kPieces) {
+      pieces.clear();
+      for (std::uint32_t i = 0; i < kPieces; ++i)
+        pieces.push_back({part.line_first + count * i / kPieces, part.line_first + count * (i + 1) / kPieces - 1,
+                          part.feed_mm_per_s});
+    }
+    for (const Part& piece : pieces) {
+      const bool whole = pieces.size() == 1;
+      out.parts.push_back(piece);
+      out.kept_back.push_back(whole ? lines.kept_back[p] : static_cast<char>(out.parts.size() % kKeepBackEvery == 0));
+      out.group.push_back(lines.group[p]);
+    }
+  }
+  if (out.parts.size() == lines.parts.size()) return;
+  lines.parts = std::move(out.parts);
+  lines.kept_back = std::move(out.kept_back);
+  lines.group = std::move(out.group);
+  lines.time_s = traced_times_s(run.trace, lines.parts);
 }
 
 /// Parts are timed as a whole and, where they have few blocks, block by block as well: a line and the arc after it
@@ -76,11 +161,17 @@ void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_e
   // Blocks that overlap have no times of their own.
   const bool overlap =
       machine.control.kind.turning_blocks_overlap && feedmodel::has_rotary_motion(run.program, machine);
+  const std::vector<LineFeed> feeds = overlap ? feeds_of_lines(run.program, machine) : std::vector<LineFeed>{};
+  const auto turns_near = [&](std::uint32_t line) {
+    for (std::uint32_t l = line > 0 ? line - 1 : 0; l <= line + 1; ++l)
+      if (l < feeds.size() && feeds[l].turns) return true;
+    return false;
+  };
   for (const Part& part : parts_of(run.program, machine)) {
     const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
-    const bool by_block =
-        !overlap && part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
+    const bool by_block = part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
+      if (overlap && turns_near(line)) continue;
       blocks.parts.push_back({line, line, part.feed_mm_per_s});
       blocks.kept_back.push_back(kept_back);
       blocks.group.push_back(static_cast<int>(count));
@@ -92,6 +183,8 @@ void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_e
   for (TimedLines* lines : {&parts, &blocks}) {
     lines->program = &run.program;
     lines->time_s = traced_times_s(run.trace, lines->parts);
+    add_pieces(run, *lines);
+    lines->step_s = run.trace.period_s;
     data.push_back(std::move(*lines));
   }
 }
@@ -124,6 +217,7 @@ void add_positionings(const FeedRun& run, const Machine& machine, int keep_back_
   }
   out.program = &run.program;
   out.time_s = traced_times_s(run.trace, out.parts);
+  out.step_s = run.trace.period_s;
   data.push_back(std::move(out));
 }
 
@@ -137,97 +231,54 @@ std::vector<TimedLines> timed_lines(const std::vector<FeedRun>& runs, const Mach
   return data;
 }
 
-/// Highest speed of an axis in rapids, and whether it was held long enough to be a limit; a speed that the axis
-/// exceeds in a feed move is none.
-struct Plateau {
-  double speed_mm_per_s = 0;
-  bool held = false;
+/// One of the six joints, by index.
+struct JointName {
+  std::size_t index = 0;
+  std::string letter() const { return std::string(1, "xyzabc"[index]); }
+  bool rotary() const { return index > 2; }
 };
 
-constexpr char kTipControl = 2;
-
-Plateau rapid_plateau(const std::vector<FeedRun>& runs, int axis) {
-  Plateau plateau;
-  double in_feed = 0;
-  for (int pass = 0; pass < 2; ++pass) {
-    double at_top_s = 0;
-    for (const FeedRun& run : runs) {
-      std::vector<char> rapid;
-      for (const nc::Move& move : run.program.moves) {
-        if (rapid.size() <= move.block + 1) rapid.resize(move.block + 2, 0);
-        rapid[move.block + 1] = move.kind == nc::MoveKind::rapid;
-        if (run.program.state_of(move).tip_control != nc::TipControl::off) rapid[move.block + 1] = kTipControl;
-      }
-      for (std::size_t k = 1; k < run.trace.line.size(); ++k) {
-        if (run.trace.line[k] >= rapid.size() || run.trace.line[k] != run.trace.line[k - 1]) continue;
-        const double speed =
-            std::abs(run.trace.command_mm[k][axis] - run.trace.command_mm[k - 1][axis]) / run.trace.period_s;
-        if (rapid[run.trace.line[k]] == kTipControl) continue;  // the axes are not those of the program
-        if (!rapid[run.trace.line[k]]) {
-          if (run.trace.line[k] > 0) in_feed = std::max(in_feed, speed);
-          continue;
-        }
-        if (pass == 0) plateau.speed_mm_per_s = std::max(plateau.speed_mm_per_s, speed);
-        if (pass == 1 && speed > kPlateauFraction * plateau.speed_mm_per_s) at_top_s += run.trace.period_s;
-      }
-    }
-    plateau.held = at_top_s > kPlateauS && in_feed <= plateau.speed_mm_per_s / kPlateauFraction;
-  }
-  return plateau;
+double& top_speed_of(Machine& machine, JointName joint) {
+  return joint.rotary() ? machine.rotary[joint.index - 3].max_velocity_rad_per_s
+                        : machine.axis[joint.index].max_velocity_mm_per_s;
 }
 
-/// Top speed of a rotary axis: the highest in moves that ask for more, if it is held.
-Plateau rotary_plateau(const std::vector<FeedRun>& runs, const Machine& machine, int axis) {
-  constexpr double kWindowS = 0.02, kAskedMore = 1.01;
-  Plateau plateau;
-  for (int pass = 0; pass < 2; ++pass) {
-    double at_top_s = 0;
-    for (const FeedRun& run : runs) {
-      if (run.trace.rotary_command_deg.empty() || !feedmodel::has_rotary_motion(run.program, machine)) continue;
-      const std::vector<LineFeed> lines = feeds_of_lines(run.program, machine);
-      const auto window = static_cast<std::size_t>(std::max(1L, std::lround(kWindowS / run.trace.period_s)));
-      for (std::size_t k = window; k < run.trace.line.size(); ++k) {
-        const std::uint32_t line = run.trace.line[k];
-        if (line != run.trace.line[k - window] || line >= lines.size() || !lines[line].turn) continue;
-        const double speed =
-            std::abs(run.trace.rotary_command_deg[k][axis] - run.trace.rotary_command_deg[k - window][axis]) /
-            (static_cast<double>(window) * run.trace.period_s);
-        if (lines[line].asked_deg_per_s[axis] < kAskedMore * speed) continue;
-        if (pass == 0) plateau.speed_mm_per_s = std::max(plateau.speed_mm_per_s, speed);
-        if (pass == 1 && speed > kPlateauFraction * plateau.speed_mm_per_s) at_top_s += run.trace.period_s;
-      }
-    }
-    plateau.held = at_top_s > kPlateauS;
-  }
-  return plateau;
-}
-
-void add_rotary_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, char letter) {
-  const int axis = letter - 'a';
-  const Plateau plateau = rotary_plateau(runs, result.machine, axis);
-  const std::string name = fmt::format("axis.{}.max_velocity_deg_per_min", letter);
-  double& limit = result.machine.rotary[static_cast<std::size_t>(axis)].max_velocity_rad_per_s;
-  if (plateau.held) {
-    limit = rad_from_deg(plateau.speed_mm_per_s);
-    const double error = kPlateauFraction < 1 ? (1 - kPlateauFraction) * plateau.speed_mm_per_s : 0.0;
+void add_top_speed(FitFeedResult& result, JointName joint, const TopSpeed& top) {
+  const std::string unit = joint.rotary() ? "deg/min" : "mm/min";
+  const std::string name =
+      fmt::format("axis.{}.max_velocity_{}_per_min", joint.letter(), joint.rotary() ? "deg" : "mm");
+  double& limit = top_speed_of(result.machine, joint);
+  if (top.limit) {
+    limit = joint.rotary() ? rad_from_deg(top.limit->value) : top.limit->value;
     result.parameters.push_back(
-        {name, 60 * plateau.speed_mm_per_s, "deg/min", 60 * error, "plateau of the axis", true});
+        {name, 60 * top.limit->value, unit, 60 * top.limit->std_error, "held speed", true, top.moves});
     return;
   }
-  result.parameters.push_back({name, 60 * deg_from_rad(limit), "deg/min", std::nullopt,
-                               fmt::format("no move that asks for more holds a top speed (highest {:.0f} degrees/min); "
-                                           "start value kept",
-                                           60 * plateau.speed_mm_per_s),
-                               false});
+  const double start = 60 * (joint.rotary() ? deg_from_rad(limit) : limit);
+  const bool exceeded = start < kBelowHeld * 60 * top.highest;
+  const std::string kept = exceeded ? "the start value is exceeded and was taken out" : "start value kept";
+  if (exceeded) limit = machine::kNoLimit;
+  result.parameters.push_back(
+      {name, 60 * (joint.rotary() ? deg_from_rad(limit) : limit), unit, std::nullopt,
+       fmt::format("no move shows the axis at its limit (it holds up to {:.0f} {}); {} (run a long rapid of {} alone)",
+                   60 * top.highest, unit, kept, static_cast<char>(std::toupper(joint.letter()[0]))),
+       false});
 }
 
-/// The corner law stands; its number is the one that the machine had, or no limit.
-Machine base_with_law(const Machine& start, const machine::Corner& corner) {
+/// The corner law stands; its number is the one that the machine had, or no limit. Numbers for each axis begin with the
+/// one for all, which holds for an axis whose own number is not determined.
+Machine base_with_law(const Machine& start, const Machine& fitted) {
+  const machine::Corner& corner = fitted.control.corner;
   for (const auto& [name, machine] : machines_of_each_law(start)) {
     if (machine.control.corner.law != corner.law) continue;
     Machine m = machine;
     m.control.corner.stop_angle_rad = corner.stop_angle_rad;
     m.control.corner.threshold_rad = corner.threshold_rad;
+    for (std::size_t i = 0; i < m.axis.size(); ++i) {
+      if (std::isinf(fitted.axis[i].speed_difference_mm_per_s)) continue;
+      m.axis[i].speed_difference_mm_per_s = corner.speed_difference_mm_per_s;
+      m.control.corner.speed_difference_mm_per_s = corner.speed_difference_mm_per_s;
+    }
     return m;
   }
   return start;
@@ -235,14 +286,14 @@ Machine base_with_law(const Machine& start, const machine::Corner& corner) {
 
 /// Every law, and angles under the best one. LinuxCNC's rounding knows neither a stop angle nor a threshold.
 LimitFit choose_law(FitFeedResult& result, const std::vector<TimedLines>& data, const TracedAccelerations& acceleration,
-                    int max_iterations) {
+                    int max_iterations, bool only_own) {
   std::size_t best = 0;
-  std::vector<TriedLaw> tried = try_laws(data, result.machine, acceleration, max_iterations, best);
+  std::vector<TriedLaw> tried = try_laws(data, result.machine, acceleration, max_iterations, best, only_own);
   LimitFit chosen = tried[best].fit;
   result.law = tried[best].name;
-  if (chosen.machine.control.corner.law != machine::CornerLaw::blend) {
+  if (chosen.machine.control.corner.law != machine::CornerLaw::blend && !only_own) {
     const std::size_t laws = tried.size();
-    chosen = try_angles(data, chosen, tried, max_iterations);
+    chosen = try_details(data, chosen, tried, max_iterations);
     for (std::size_t i = laws; i < tried.size(); ++i)
       if (tried[i].fit.held_out_cost == chosen.held_out_cost) result.law += tried[i].name.substr(1);
   }
@@ -341,9 +392,16 @@ std::string source_of(const LimitParameter& p) {
 
 void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start, bool logged) {
   for (const LimitParameter& p : fit.parameters) {
-    if (p.determined) {
+    if (p.assumed) {
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
+                                   "usual value: the traces tell it only together with the accelerations", true});
+    } else if (p.together) {
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
+                                   fmt::format("the traces tell it only together with others ({})", what_tells(p.name)),
+                                   true, p.stretches});
+    } else if (p.determined) {
       const std::string note = p.from_ramps ? "constant accelerations of the commands" : logged ? source_of(p) : "";
-      result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, note, true});
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, note, true, p.stretches});
     } else {
       result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
                                    fmt::format("not determined by the {}; start value kept ({})",
@@ -372,23 +430,6 @@ void add_angles(FitFeedResult& result) {
   if (corner.threshold_rad > 0) add("control.corner.threshold_degrees", corner.threshold_rad);
 }
 
-void add_velocity(FitFeedResult& result, const std::vector<FeedRun>& runs, int axis) {
-  const Plateau plateau = rapid_plateau(runs, axis);
-  const std::string name = std::string("axis.") + kAxes[axis] + ".max_velocity_mm_per_min";
-  double& limit = result.machine.axis[axis].max_velocity_mm_per_s;
-  if (plateau.held) {
-    limit = plateau.speed_mm_per_s;
-    result.parameters.push_back(
-        {name, 60 * limit, "mm/min", 60 * 1e-4 / runs.front().trace.period_s, "plateau of the rapids", true});
-    return;
-  }
-  result.parameters.push_back(
-      {name, 60 * limit, "mm/min", std::nullopt,
-       fmt::format("no rapid reaches a constant top speed (highest {:.0f} mm/min); start value kept",
-                   60 * plateau.speed_mm_per_s),
-       false});
-}
-
 /// Jerk of each axis: one window for all, so that it does not bend the path.
 void add_jerk(FitFeedResult& result, const FittedValue& window_s) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -409,6 +450,8 @@ void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
   std::array<std::optional<FittedValue>, 3> ramps;
   bool any = false, agree = true;
   for (int axis = 0; axis < 3; ++axis) {
+    // Without its acceleration a plan has no ramp that could be compared.
+    if (!std::isfinite(result.machine.axis[axis].acceleration_mm_per_s2)) continue;
     auto& ramp = ramps[static_cast<std::size_t>(axis)] = ramp_time_s(runs, result.machine, axis);
     if (!ramp) continue;
     any = true;
@@ -425,8 +468,38 @@ void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
   }
 }
 
+}  // namespace
+
+std::optional<TimePromise> time_promise(const std::vector<double>& true_s, const std::vector<double>& predicted_s) {
+  constexpr std::size_t kFewest = 5, kDraws = 2000;
+  if (true_s.size() < kFewest) return std::nullopt;
+  std::mt19937 random(1);
+  std::vector<double> percent;
+  for (std::size_t draw = 0; draw < kDraws; ++draw) {
+    double sum = 0, predicted = 0;
+    for (std::size_t i = 0; i < true_s.size(); ++i) {
+      const std::size_t at = random() % true_s.size();
+      sum += true_s[at];
+      predicted += predicted_s[at];
+    }
+    percent.push_back(100 * (predicted / sum - 1));
+  }
+  std::ranges::sort(percent);
+  return TimePromise{percent[kDraws / 40], percent[kDraws - 1 - kDraws / 40]};
+}
+
+namespace {
+
+/// What the start file had, by the keys of the machine file.
+void add_changes(std::vector<FitParameter>& parameters, const Machine& start) {
+  for (FitParameter& p : parameters)
+    if (p.written)
+      if (const auto was = machine::number_of(start, p.name); was && *was != p.value) p.changed_from = *was;
+}
+
 void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_back_every) {
   double square[2] = {0, 0}, p95[2] = {0, 0};
+  std::vector<double> true_s, predicted_s;  // of the parts held out
   std::size_t count = 0;
   for (const FeedRun& run : runs) {
     const std::vector<Part> parts = parts_of(run.program, result.machine);
@@ -442,12 +515,17 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
         FitError& error = kept_back ? result.held_out : result.fitted;
         ++error.parts;
         error.part_time_percent += 100 * std::abs(a.time_model_s / a.time_trace_s - 1);
+        if (kept_back) {
+          true_s.push_back(a.time_trace_s);
+          predicted_s.push_back(a.time_model_s);
+        }
         square[kept_back] += a.speed_rms_percent * a.speed_rms_percent;
         p95[kept_back] += a.speed_p95_percent;
       }
     }
     result.runs.push_back(std::move(accuracy));
   }
+  result.promise = time_promise(true_s, predicted_s);
   for (int i = 0; i < 2; ++i) {
     FitError& error = i ? result.held_out : result.fitted;
     if (error.parts == 0) continue;
@@ -487,26 +565,44 @@ void judge_logged(FitFeedResult& result, const std::vector<LoggedLines>& logged,
 
 namespace {
 
-/// Axis: machine::Axis or machine::RotaryAxis.
+double& backlash_of(machine::Axis& axis) { return axis.backlash_mm; }
+double& backlash_of(machine::RotaryAxis& axis) { return axis.backlash_rad; }
+double in_machine(const machine::Axis&, double mm) { return mm; }
+double in_machine(const machine::RotaryAxis&, double deg) { return rad_from_deg(deg); }
+
+/// Axis: machine::Axis or machine::RotaryAxis. A number that the traces do not determine keeps its start value.
 template <class Axis>
-void set_drive(Axis& a, std::vector<FitParameter>& parameters, const std::string& name, const DriveFit& drive) {
+void set_drive(Axis& a, std::vector<FitParameter>& parameters, const std::string& name, const char* unit,
+               const DriveFit& drive) {
   if (!drive.moved) {
     parameters.push_back({name + "position_gain_per_s", a.position_gain_per_s, "1/s", std::nullopt,
                           "the axis does not move in the traces", false});
     return;
   }
-  a.position_gain_per_s = drive.gain_per_s.value;
-  a.velocity_lag_s = drive.velocity_lag_s.value;
-  a.feed_forward_percent = std::clamp(drive.feed_forward_percent.value, 0.0, 100.0);
-  a.filter_s = drive.filter_s.value;
-  const auto add = [&](const char* key, const FittedValue& v, double scale, const char* unit) {
-    if (v.value == 0 && v.std_error == 0) return;
-    parameters.push_back({name + key, v.value * scale, unit,
-                          std::isfinite(v.std_error) ? std::optional(v.std_error * scale) : std::nullopt, "", true});
+  const auto add = [&](const std::string& key, const FittedValue& v, double& value, double fitted, double scale,
+                       const char* in) {
+    if (v.value == 0 && v.std_error == 0) {
+      value = 0;
+      return;
+    }
+    const bool determined = is_determined(v);
+    if (determined) value = fitted;
+    parameters.push_back(
+        {name + key, determined ? v.value * scale : value * scale, in,
+         determined ? std::optional(v.std_error * scale) : std::nullopt,
+         determined ? ""
+                    : "not determined by the traces; start value kept (run the polygon programs of camber protocol)",
+         determined});
   };
-  add("position_gain_per_s", drive.gain_per_s, 1, "1/s");
-  add("velocity_lag_ms", drive.velocity_lag_s, 1000, "ms");
-  add("feed_forward_percent", drive.feed_forward_percent, 1, "%");
+  add("position_gain_per_s", drive.gain_per_s, a.position_gain_per_s, drive.gain_per_s.value, 1, "1/s");
+  add("velocity_lag_ms", drive.velocity_lag_s, a.velocity_lag_s, drive.velocity_lag_s.value, 1000, "ms");
+  add("feed_forward_percent", drive.feed_forward_percent, a.feed_forward_percent,
+      std::clamp(drive.feed_forward_percent.value, 0.0, 100.0), 1, "%");
+  add("acceleration_feed_forward_ms", drive.acceleration_feed_forward_s, a.acceleration_feed_forward_s,
+      drive.acceleration_feed_forward_s.value, 1000, "ms");
+  add("dead_time_ms", drive.dead_time_s, a.dead_time_s, drive.dead_time_s.value, 1000, "ms");
+  add(fmt::format("backlash_{}", unit), drive.backlash, backlash_of(a), in_machine(a, drive.backlash.value), 1, unit);
+  a.filter_s = drive.filter_s.value;
   if (drive.filter_s.value > 0)
     parameters.push_back(
         {name + "filter_ms", 1000 * drive.filter_s.value, "ms", std::nullopt, "chosen from a list", true});
@@ -515,7 +611,7 @@ void set_drive(Axis& a, std::vector<FitParameter>& parameters, const std::string
 }  // namespace
 
 void add_drive(Machine& machine, std::vector<FitParameter>& parameters, int axis, const DriveFit& drive) {
-  set_drive(machine.axis[axis], parameters, std::string("axis.") + kAxes[axis] + ".", drive);
+  set_drive(machine.axis[axis], parameters, std::string("axis.") + kAxes[axis] + ".", "mm", drive);
 }
 
 FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const Machine& start, const FitFeedOptions& options) {
@@ -534,21 +630,28 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   std::vector<const ServoTrace*> rotary;
   for (const ServoTrace& trace : rotary_traces) rotary.push_back(&trace);
   bool drives_converged = true;
-  if (!traces.empty()) result.machine.control.period_s = traces.front()->period_s;
+  set_period(result, traces);
   set_control_defaults(result.machine.control);
 
   std::size_t parts = 0;
   std::vector<TimedLines> data = timed_lines(runs, result.machine, options.keep_back_every, parts);
   const std::vector<LoggedLines> logged = logged_lines(logs, options.keep_back_every, parts);
   for (const LoggedLines& l : logged) data.push_back(l.lines);
-  for (int axis = 0; axis < 3; ++axis) add_velocity(result, runs, axis);
-  for (const char letter : start.kinematics.rotary_axes()) add_rotary_velocity(result, runs, letter);
+  std::vector<HeldSpeed> held;
+  for (const FeedRun& run : runs)
+    for (const HeldSpeed& h : held_speeds(run, result.machine)) held.push_back(h);
+  const auto tops = top_speeds(held);
+  for (std::size_t axis = 0; axis < 3; ++axis) add_top_speed(result, {axis}, tops[axis]);
+  for (const char letter : start.kinematics.rotary_axes()) {
+    const auto joint = static_cast<std::size_t>(3 + letter - 'a');
+    add_top_speed(result, {joint}, tops[joint]);
+  }
   const double width_mm = result.machine.control.in_position_mm;
   result.machine.control.in_position_mm = machine::kNoLimit;  // waits are between the parts
   const Machine base_of_all = result.machine;
   LimitFit limits = choose_law(result, data, {traced_accelerations(traces, rotary), held_accelerations(runs)},
-                               options.max_iterations / 4);
-  result.machine = base_with_law(base_of_all, limits.whole.control.corner);
+                               options.max_iterations / 4, options.update);
+  result.machine = base_with_law(base_of_all, limits.whole);
   refine_block_time(limits, data, result.machine, options.max_iterations / 3);
   const double period = result.machine.control.period_s;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend) {
@@ -571,16 +674,17 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   result.machine.control.rest_latency_s = rest_latency_s(runs);
   result.parameters.push_back({"control.rest_latency_ms", 1000 * result.machine.control.rest_latency_s, "ms",
                                std::nullopt, "median of the rests", true});
+  const DriveFitOptions drive_options{.period_s = result.machine.control.period_s};
   for (int axis = 0; axis < 3; ++axis) {
-    result.drives[axis] = fit_drive(traces, axis, {});
+    result.drives[axis] = fit_drive(traces, axis, drive_options);
     add_drive(result.machine, result.parameters, axis, result.drives[axis]);
     drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);
   }
   for (const char letter : start.kinematics.rotary_axes()) {
     const int axis = letter - 'a';
-    DriveFit& drive = result.rotary_drives[static_cast<std::size_t>(axis)] = fit_drive(rotary, axis, {});
+    DriveFit& drive = result.rotary_drives[static_cast<std::size_t>(axis)] = fit_drive(rotary, axis, drive_options);
     set_drive(result.machine.rotary[static_cast<std::size_t>(axis)], result.parameters, fmt::format("axis.{}.", letter),
-              drive);
+              "deg", drive);
     drives_converged = drives_converged && (!drive.moved || drive.converged);
   }
   add_smoothing(result, runs, traces);
@@ -589,6 +693,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   for (const LoggedLines& l : logged) programs.push_back(l.program.get());
   result.machine.fitted_range = feedmodel::range_of(programs);
   result.residual_median_ms = limits.residual_median_ms;
+  add_changes(result.parameters, start);
   judge(result, runs, options.keep_back_every);
   result.converged = limits.converged && drives_converged;
   result.message = !drives_converged ? "the fit of a drive did not converge"

@@ -25,16 +25,28 @@ struct FeedRun {
 struct FitFeedOptions {
   int keep_back_every = 3;  ///< every n-th part is held out
   int max_iterations = 60;
+  bool update = false;  ///< the corner law of the start file stands; its numbers change where the traces determine them
 };
 
 struct FitParameter {
   std::string name;  ///< key of the machine file, e.g. "axis.x.acceleration_mm_per_s2"
   double value = 0;
   std::string unit;
-  std::optional<double> std_error;  ///< not given: not fitted, or the data does not determine it
-  std::string note;                 ///< why it has no error, where the reason is worth a word
-  bool written = true;              ///< the value is written to the machine file
+  std::optional<double> std_error;       ///< not given: not fitted, or the data does not determine it
+  std::string note;                      ///< why it has no error, where the reason is worth a word
+  bool written = true;                   ///< the value is written to the machine file
+  int stretches = 0;                     ///< parts of the traces, moves or slices that determine it; 0: not counted
+  std::optional<double> changed_from{};  ///< value of the start file; infinite: no limit
 };
+
+/// Range that the relative error of the time of a next program is in, in 19 of 20 cases, %.
+struct TimePromise {
+  double low_percent = 0, high_percent = 0;
+};
+
+/// Bootstrap over parts that were held out (fixed seed): as many of them are drawn, with repetition, and their
+/// predicted and true times added up. Nothing for less than five parts.
+std::optional<TimePromise> time_promise(const std::vector<double>& true_s, const std::vector<double>& predicted_s);
 
 /// The model's error on parts of the traces.
 struct FitError {
@@ -77,6 +89,7 @@ struct FitFeedResult {
   std::array<DriveFit, 3> drives;
   std::array<DriveFit, 3> rotary_drives{};  ///< a, b, c; their residuals are in degrees
   FitError fitted, held_out;
+  std::optional<TimePromise> promise;
   std::vector<LoggedTime> logged;  ///< one for each geometry; with the fitted machine
   LoggedError logged_fitted, logged_held_out;
   std::vector<RunAccuracy> runs;  ///< all parts, with the fitted machine

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "base/units.h"
 #include "calib/bounded_least_squares.h"
@@ -20,11 +21,15 @@ namespace {
 
 using machine::Machine;
 
-constexpr double kTimeNoise = 0.001;     // s; a part's time is known to about a period
+constexpr double kTimeNoise = 0.001;     // s; a part's time is known to about a sample, but not better
 constexpr double kTimeFraction = 0.002;  // and to this fraction of itself
 constexpr double kLogFraction = 0.003;   // a model's error grows with the time; stretches of a log are long
-constexpr double kNoTime = 1e-9;         // s
-constexpr double kShiftPeriods = 0.5;
+constexpr double kUsualArcNormal = 0.87, kUsualArcTangential = 0.5, kUsualStop = 0.5;
+constexpr int kFewestTogether = 3;    // groups of parts that a value must act on to be written at all
+constexpr double kPriorWeight = 0.3;  // of a logarithm: start values count where times tell nothing
+constexpr double kTelling = 0.3;      // of what a part's time is known to, by a change by a factor e
+constexpr double kNoTime = 1e-9;      // s
+constexpr double kShiftSamples = 0.5;
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
 constexpr double kStep = 1e-3;  // of a logarithm; the plan has small kinks (whole periods): a wide step ignores them
@@ -70,6 +75,24 @@ LimitParameter a_number(const char* name, const char* unit, double (*get)(const 
       .name = name, .unit = unit, .get = get, .set = set, .least = least, .most = most, .start = start, .fitted = {}};
 }
 
+template <int axis>
+LimitParameter speed_difference(const char* name) {
+  return {.name = name,
+          .unit = "mm/min",
+          .get = [](const Machine& m) { return 60 * m.axis[axis].speed_difference_mm_per_s; },
+          .set = [](Machine& m, double v) { m.axis[axis].speed_difference_mm_per_s = v / 60; },
+          .least = 0.5,
+          .most = 60000,
+          .start = 200,
+          .fitted = {}};
+}
+
+/// Whether each axis has a permitted speed difference of its own.
+bool differs_by_axis(const Machine& m) {
+  return m.control.corner.law == machine::CornerLaw::speed_difference &&
+         std::ranges::all_of(m.axis, [](const machine::Axis& a) { return std::isfinite(a.speed_difference_mm_per_s); });
+}
+
 /// The number of a corner law. That of the rounding is the program's (G64 P) or the machine file's.
 std::optional<LimitParameter> law_parameter(machine::CornerLaw law) {
   switch (law) {
@@ -102,7 +125,8 @@ LimitParameter stop_time_parameter() {
 
 double scale_of(const TimedLines& lines, std::size_t part) {
   const double time_s = lines.time_s[part];
-  return lines.logged() ? std::hypot(lines.sigma_s[part], kLogFraction * time_s) : kTimeNoise + kTimeFraction * time_s;
+  return lines.logged() ? std::hypot(lines.sigma_s[part], kLogFraction * time_s)
+                        : std::max(kTimeNoise, lines.step_s) + kTimeFraction * time_s;
 }
 
 /// Residuals of the fitted parts, in units of what a part's time is known to.
@@ -148,6 +172,8 @@ class TimeResiduals {
       const double r = residuals[i];
       out[i] = std::copysign(loss_scale_ * std::sqrt(std::log1p(r * r / (loss_scale_ * loss_scale_))), r);
     }
+    for (std::size_t i = 0; i < parameters_.size(); ++i)
+      out[residuals.size() + i] = kPriorWeight * (logs[0][i] - std::log(parameters_[i].start));
     return true;
   }
 
@@ -166,7 +192,7 @@ std::unique_ptr<ceres::CostFunction> make_cost(const std::vector<TimedLines>& da
   auto cost = std::make_unique<ceres::DynamicNumericDiffCostFunction<TimeResiduals, ceres::FORWARD>>(
       new TimeResiduals(data, base, parameters, loss_scale), ceres::TAKE_OWNERSHIP, step);
   cost->AddParameterBlock(static_cast<int>(parameters.size()));
-  cost->SetNumResiduals(static_cast<int>(residuals));
+  cost->SetNumResiduals(static_cast<int>(residuals + parameters.size()));
   return cost;
 }
 
@@ -187,7 +213,10 @@ bool search(const std::vector<TimedLines>& data, const Machine& base, const std:
   std::vector<double> residuals;
   const auto cost = [&](const std::vector<double>& at) {
     residuals_of(data, machine_at(base, parameters, at.data()), false, residuals);
-    return robust_cost(residuals);
+    double prior = 0;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      prior += std::pow(kPriorWeight * (at[i] - std::log(parameters[i].start)), 2);
+    return robust_cost(residuals) + prior / static_cast<double>(std::max<std::size_t>(1, residuals.size()));
   };
   double least = cost(logs);
   std::vector<char> idle(logs.size(), 0);
@@ -219,7 +248,7 @@ bool search(const std::vector<TimedLines>& data, const Machine& base, const std:
 /// What each residual of the fitted parts is of, in their order.
 struct Row {
   int group = 0;
-  double scale_s = 0;
+  double scale_s = 0, step_s = 0;
   bool logged = false;
 };
 
@@ -228,7 +257,7 @@ std::vector<Row> rows_of(const std::vector<TimedLines>& data) {
   for (const TimedLines& lines : data)
     for (std::size_t i = 0; i < lines.time_s.size(); ++i)
       if (lines.time_s[i] > 0 && !lines.kept_back[i])
-        rows.push_back({lines.group[i], scale_of(lines, i), lines.logged()});
+        rows.push_back({lines.group[i], scale_of(lines, i), lines.step_s, lines.logged()});
   return rows;
 }
 
@@ -237,7 +266,7 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
                 const std::vector<double>& logs, std::size_t count) {
   const auto n = static_cast<int>(fit.parameters.size());
   const auto cost = make_cost(data, base, fit.parameters, count, kLossScale);
-  std::vector<double> residuals(count), jacobian(count * n);
+  std::vector<double> residuals(count + fit.parameters.size()), jacobian((count + fit.parameters.size()) * n);
   const double* blocks[] = {logs.data()};
   double* jacobians[] = {jacobian.data()};
   cost->Evaluate(blocks, residuals.data(), jacobians);
@@ -250,17 +279,24 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
       fit.parameters[i].determined = true;
       continue;
     }
-    fit.parameters[i].determined = j.col(i).norm() > 1.0;  // a change by a factor e moves some time by its noise
+    // A change by a factor e moves some time by its noise.
+    fit.parameters[i].acts = fit.parameters[i].determined = j.col(i).norm() > 1.0;
     double logged = 0;
     for (std::size_t row = 0; row < count; ++row)
       if (rows[row].logged) logged += std::pow(j(static_cast<Eigen::Index>(row), i), 2);
     fit.parameters[i].logged_fraction = logged > 0 ? logged / j.col(i).squaredNorm() : 0;
     fit.parameters[i].fitted = {std::exp(logs[i]), INFINITY};
+    std::set<int> groups;
+    for (std::size_t row = 0; row < count; ++row)
+      if (std::abs(j(static_cast<Eigen::Index>(row), i)) > kTelling) groups.insert(rows[row].group);
+    fit.parameters[i].stretches = static_cast<int>(groups.size());
     if (fit.parameters[i].determined) determined.push_back(i);
   }
+  if (determined.empty()) return;
   Eigen::MatrixXd normal(determined.size(), determined.size());
   for (std::size_t a = 0; a < determined.size(); ++a)
-    for (std::size_t b = 0; b < determined.size(); ++b) normal(a, b) = j.col(determined[a]).dot(j.col(determined[b]));
+    for (std::size_t b = 0; b < determined.size(); ++b)
+      normal(a, b) = j.col(determined[a]).dot(j.col(determined[b])) + (a == b ? kPriorWeight * kPriorWeight : 0.0);
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(normal);
   if (!lu.isInvertible()) return;
   const Eigen::MatrixXd inverse = lu.inverse();
@@ -271,10 +307,11 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
     for (std::size_t a = 0; a < determined.size(); ++a) gradient(a) = j(static_cast<Eigen::Index>(row), determined[a]);
     auto& score = scores.try_emplace(rows[row].group, Eigen::VectorXd::Zero(gradient.size())).first->second;
     score += gradient * residuals[row];
-    if (!rows[row].logged) shift += gradient * (kShiftPeriods * base.control.period_s / rows[row].scale_s);
+    if (!rows[row].logged) shift += gradient * (kShiftSamples * rows[row].step_s / rows[row].scale_s);
   }
   Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(inverse.rows(), inverse.cols());
   for (const auto& [group, score] : scores) middle += score * score.transpose();
+  middle.diagonal().array() += kPriorWeight * kPriorWeight;
   shift = inverse * shift;
   const Eigen::MatrixXd covariance = inverse * middle * inverse + shift * shift.transpose();
   for (std::size_t a = 0; a < determined.size(); ++a) {
@@ -320,8 +357,10 @@ bool any_logged(const std::vector<TimedLines>& data) {
 std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged) {
   const auto fraction = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double),
                            double value) {
-    return LimitParameter{
+    LimitParameter p{
         .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
+    p.usual = value;
+    return p;
   };
   std::vector<LimitParameter> p;
   p.push_back(acceleration<0>("axis.x.acceleration_mm_per_s2"));
@@ -330,14 +369,14 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
   add_rotary_accelerations(machine, p);
   p.push_back(fraction(
       "control.arc_normal_share", [](const Machine& m) { return m.control.arc_normal_fraction; },
-      [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, 0.9));
+      [](Machine& m, double v) { m.control.arc_normal_fraction = v; }, kUsualArcNormal));
   p.push_back(fraction(
       "control.arc_tangential_share", [](const Machine& m) { return m.control.arc_tangential_fraction; },
-      [](Machine& m, double v) { m.control.arc_tangential_fraction = v; }, 0.7));
+      [](Machine& m, double v) { m.control.arc_tangential_fraction = v; }, kUsualArcTangential));
   if (machine.control.corner.law == machine::CornerLaw::blend) {
     p.push_back(fraction(
         "control.stop_acceleration_share", [](const Machine& m) { return m.control.stop_acceleration_fraction; },
-        [](Machine& m, double v) { m.control.stop_acceleration_fraction = v; }, 0.7));
+        [](Machine& m, double v) { m.control.stop_acceleration_fraction = v; }, kUsualStop));
     p.push_back({.name = "control.corner.step_share",
                  .unit = "1",
                  .get = [](const Machine& m) { return m.control.corner.step_fraction; },
@@ -345,9 +384,16 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
                  .least = 1e-3,
                  .most = 0.7,
                  .start = 0.05,
+                 .usual = 0.1,
                  .fitted = {}});
   }
-  if (const auto law = law_parameter(machine.control.corner.law)) p.push_back(*law);
+  if (differs_by_axis(machine)) {
+    p.push_back(speed_difference<0>("axis.x.speed_difference_mm_per_min"));
+    p.push_back(speed_difference<1>("axis.y.speed_difference_mm_per_min"));
+    p.push_back(speed_difference<2>("axis.z.speed_difference_mm_per_min"));
+  } else if (const auto law = law_parameter(machine.control.corner.law)) {
+    p.push_back(*law);
+  }
   if (std::isfinite(machine.control.corner.stop_angle_rad)) p.push_back(stop_time_parameter());
   if (logged)
     p.push_back(a_number(
@@ -380,10 +426,16 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
   std::size_t i = 0;
   for (std::size_t p = 0; p < data.parts.size(); ++p) {
     const auto line = [&](std::size_t k) { return data.program->moves[segments[k].move].block + 1; };
-    while (i < segments.size() && (segments[i].rest || line(i) < data.parts[p].line_first)) ++i;
+    const auto before = [&](std::size_t k) {
+      return data.logged() ? segments[k].move < data.moves[p].first : line(k) < data.parts[p].line_first;
+    };
+    const auto within = [&](std::size_t k) {
+      return data.logged() ? segments[k].move < data.moves[p].second : line(k) <= data.parts[p].line_last;
+    };
+    while (i < segments.size() && (segments[i].rest || before(i))) ++i;
     double first = -1, end = 0;
     const double before_end = i > 0 ? segments[i - 1].start_s + segments[i - 1].duration_s : 0.0;
-    for (; i < segments.size() && (segments[i].rest || line(i) <= data.parts[p].line_last); ++i) {
+    for (; i < segments.size() && (segments[i].rest || within(i)); ++i) {
       if (segments[i].rest) continue;
       if (first < 0) first = boundary_s(before_end, segments[i]);
       end = segments[i].start_s + segments[i].duration_s;
@@ -393,8 +445,9 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
     // At a stop the line changes with the next period: half a period on average, which a fit can follow better than
     // whole ones.
     const bool stops = i >= segments.size() || segments[i].rest || segments[i].start_s > end + kNoTime;
-    times[p] = end - first + (stops ? 0.5 * machine.control.period_s : 0.0) +
-               (data.logged() ? machine.control.rapid_change_s : 0.0);
+    const bool waits = data.logged() && !data.ends_in_motion[p];
+    times[p] =
+        end - first + (stops ? 0.5 * machine.control.period_s : 0.0) + (waits ? machine.control.rapid_change_s : 0.0);
   }
   return times;
 }
@@ -418,8 +471,10 @@ double scan_start(const std::vector<TimedLines>& data, const Machine& base, std:
   return least;
 }
 
-LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, std::vector<LimitParameter> parameters,
-                    int max_iterations, bool far_away) {
+namespace {
+
+LimitFit fit_once(const std::vector<TimedLines>& data, const Machine& start, std::vector<LimitParameter> parameters,
+                  int max_iterations, bool far_away) {
   LimitFit fit;
   fit.parameters = std::move(parameters);
   std::vector<double> logs;
@@ -427,7 +482,16 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
   std::vector<double> residuals;
   residuals_of(data, machine_at(start, fit.parameters, logs.data()), false, residuals);
   fit.machine = fit.whole = start;
-  if (residuals.size() <= fit.parameters.size()) return fit;
+  if (residuals.empty()) {
+    // What was read in the ramps of the commands stands by itself.
+    for (LimitParameter& p : fit.parameters) {
+      p.determined = p.from_ramps;
+      if (p.determined) p.set(fit.machine, p.fitted.value);
+    }
+    fit.whole = fit.machine;
+    fit.converged = true;
+    return fit;
+  }
 
   const bool overlap = blocks_overlap(data, start);
   // A wide loss first: from far away every part looks like one that no plan explains.
@@ -437,8 +501,12 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
   set_errors(fit, data, start, logs, residuals.size());
 
   const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());
-  for (const LimitParameter& p : fit.parameters)
-    if (p.determined) p.set(fit.machine, p.fitted.value);
+  for (LimitParameter& p : fit.parameters) {
+    // No limit at all would be worse than a value that the times tell only together with others.
+    p.together = !p.determined && p.acts && std::isinf(p.get(start)) && p.stretches >= kFewestTogether &&
+                 p.fitted.std_error < p.fitted.value;
+    if (p.determined || p.together) p.set(fit.machine, p.fitted.value);
+  }
   std::vector<double> milliseconds;
   for (const TimedLines& lines : data) {
     const auto planned = planned_times_s(lines, fitted, feedmodel::plan_motion(*lines.program, fitted).times);
@@ -452,6 +520,47 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
   const LimitCost cost = cost_of(data, fitted);
   fit.fitted_cost = cost.fitted;
   fit.held_out_cost = cost.held_out;
+  return fit;
+}
+
+/// The times tell a value by less than this fraction of it.
+bool is_ambiguous(const LimitParameter& p) {
+  constexpr double kLogError = 0.3;
+  return std::isinf(p.fitted.std_error) ? p.acts : p.fitted.std_error > kLogError * p.fitted.value;
+}
+
+bool is_acceleration(const LimitParameter& p) { return p.name.find(".acceleration_") != p.name.npos; }
+
+}  // namespace
+
+LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, std::vector<LimitParameter> parameters,
+                    int max_iterations, bool far_away) {
+  for (LimitParameter& p : parameters) p.assumed = false;
+  LimitFit fit = fit_once(data, start, parameters, max_iterations, far_away);
+  const auto ambiguous = [](const LimitParameter& p) { return !p.from_ramps && is_ambiguous(p); };
+  const auto is_share = [&](const LimitParameter& p) { return p.name.ends_with("_share") && ambiguous(p); };
+  const bool together =
+      std::ranges::any_of(fit.parameters, [&](const auto& p) { return is_acceleration(p) && ambiguous(p); }) &&
+      std::ranges::any_of(fit.parameters, is_share);
+  if (!together) return fit;
+  // The times tell accelerations and shares of them only together: the shares keep their usual values.
+  Machine base = start;
+  std::vector<LimitParameter> free, assumed;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    LimitParameter& p = parameters[i];
+    if (!is_share(fit.parameters[i])) {
+      free.push_back(p);
+      continue;
+    }
+    p.start = p.usual;
+    p.set(base, p.usual);
+    p.fitted = {p.usual, INFINITY};
+    p.assumed = p.acts = true;
+  }
+  fit = fit_once(data, base, std::move(free), max_iterations, far_away);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].assumed)
+      fit.parameters.insert(fit.parameters.begin() + static_cast<std::ptrdiff_t>(i), parameters[i]);
   return fit;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Stage two of fit-feed: the limits that the control plans with, from the times of blocks that it commanded.
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib/feed_accuracy.h"
@@ -21,6 +22,10 @@ struct TimedLines {
   /// Of each part: what its time is known to. Empty: a servo trace's, about a period. The times of a log, which gives
   /// it, end when the rapid behind the part begins, so that they hold the wait before it.
   std::vector<double> sigma_s{};
+  /// Of each logged part: its moves [first, end), of which a program of stretches may have the lines elsewhere again.
+  std::vector<std::pair<std::size_t, std::size_t>> moves{};
+  std::vector<char> ends_in_motion{};  ///< of each logged part: no wait at its end
+  double step_s = 0;                   ///< between the samples of a servo trace
   bool logged() const { return !sigma_s.empty(); }
 };
 
@@ -44,12 +49,17 @@ struct LimitParameter {
   double (*get)(const machine::Machine&);
   void (*set)(machine::Machine&, double);
   double least = 0, most = 0, start = 0;
+  double usual = 0;  ///< of a share: what controls have
   FittedValue fitted;
   bool determined = false;  ///< determined by the data
   /// `fitted` was read in the commands of the traces (traced_acceleration.h) and stays.
   bool from_ramps = false;
+  bool acts = false;      ///< it changes some time
+  bool together = false;  ///< written all the same: the start file has no limit, and the times tell it with others
+  bool assumed = false;   ///< kept at `usual`, since the times tell it only together with others
   /// Fraction of its squared derivatives that comes from logged times.
   double logged_fraction = 0;
+  int stretches = 0;  ///< groups of parts whose times it changes
 };
 
 /// Those that act under the machine's corner law, with start values that suit most controls (never the machine's own:
@@ -70,7 +80,8 @@ struct LimitFit {
 /// units of what it is known to, whether a servo trace or a log has it. Standard errors: the sandwich (J'J)^-1 sum(s
 /// s') (J'J)^-1 over groups, s = J'r of a group, and beside it what a common shift of all traced times by half a period
 /// does, since a trace tells times to a period. far_away: the start values may be wrong by much; a wide loss leads
-/// first. Where blocks overlap, a compass search instead.
+/// first. Where blocks overlap, a compass search instead. Shares of accelerations that the times tell only together
+/// with the accelerations are assumed at their usual values.
 LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine& start,
                     std::vector<LimitParameter> parameters, int max_iterations, bool far_away);
 

@@ -13,7 +13,7 @@ constexpr double kLookS = 0.4;  // after a start
 constexpr double kMaxRampS = 0.25;
 constexpr double kMovesMm = 0.05;     // over the look
 constexpr double kFewestPeriods = 8;  // a shorter one looks like a start that is a period or two off
-constexpr double kBetterBy = 0.2;     // fraction of the squares that an average must take away
+constexpr double kBetterBy = 0.7;     // fraction of the squares that an average must take away
 constexpr std::size_t kGroups = 5;
 constexpr std::size_t kFewestStarts = 5;
 constexpr std::size_t kMaxStarts = 120;
@@ -65,16 +65,20 @@ void add_starts(const FeedRun& run, const machine::Machine& machine, int axis, s
   const std::vector<Part> parts = parts_of(run.program, machine);
   const auto in_plan = starts_of(planned.line, parts), in_trace = starts_of(run.trace.line, parts);
   const auto look = static_cast<std::size_t>(kLookS / run.trace.period_s);
+  const double step = run.trace.period_s / machine.control.period_s;  // of a sample of the trace, in periods
   for (std::size_t p = 0; p < parts.size() && out.size() < kMaxStarts; ++p) {
     const std::size_t a = in_plan[p], b = in_trace[p];
     if (a == 0 || b == 0) continue;
     Start s;
     for (std::size_t i = 0; i < look; ++i) {
-      const bool same_part = a + i < planned.line.size() && b + i < run.trace.line.size() &&
+      const double at = static_cast<double>(a) + step * static_cast<double>(i);
+      const auto k = static_cast<std::size_t>(at);
+      const bool same_part = k + 1 < planned.line.size() && b + i < run.trace.line.size() &&
                              run.trace.line[b + i] >= parts[p].line_first &&
                              run.trace.line[b + i] <= parts[p].line_last;
       if (!same_part) break;
-      s.planned_mm.push_back(planned.command_mm[a + i] - planned.command_mm[a]);
+      const double u = at - static_cast<double>(k);
+      s.planned_mm.push_back((1 - u) * planned.command_mm[k] + u * planned.command_mm[k + 1] - planned.command_mm[a]);
       s.traced_mm.push_back(run.trace.command_mm[b + i][axis] - run.trace.command_mm[b][axis]);
     }
     if (s.planned_mm.size() > 3 && std::abs(s.planned_mm.back()) > kMovesMm) out.push_back(std::move(s));

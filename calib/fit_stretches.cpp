@@ -72,19 +72,20 @@ Data shortened(const std::vector<StretchRun>& runs) {
       Data::Item item;
       item.judged.timed = t;
       item.judged.program_name = runs[r].program_name;
-      item.judged.constant_feed_s = programmed_time_s(t.stretch, runs[r].program);
+      item.judged.constant_feed_s = programmed_time_s(t, runs[r].program);
       item.program = r;
       item.judged.kind = kind_of(t.stretch, runs[r].program);
-      nc::Move rest = runs[r].program.moves[t.stretch.move_first];
+      nc::Move rest = runs[r].program.moves[context_of(t.stretch, runs[r].program).first];
       rest.kind = nc::MoveKind::dwell;
       rest.end_mm = rest.start_mm;
       rest.arc = nc::Move::kNoArc;
       rest.feed_mm_per_s = 0;
       program.moves.push_back(rest);
-      item.move_first = program.moves.size();
-      for (std::size_t i = t.stretch.move_first; i < t.stretch.move_end; ++i)
-        program.moves.push_back(runs[r].program.moves[i]);
-      item.move_end = program.moves.size();
+      const StretchContext context = context_of(t.stretch, runs[r].program);
+      item.move_first = program.moves.size() + t.stretch.move_first - context.first;
+      item.move_end = program.moves.size() + t.stretch.move_end - context.first;
+      const auto moves = moves_at_override(runs[r].program, context.first, context.end, t.feed_factor);
+      program.moves.insert(program.moves.end(), moves.begin(), moves.end());
       data.items.push_back(item);
     }
     data.programs.push_back(std::move(program));
@@ -94,9 +95,12 @@ Data shortened(const std::vector<StretchRun>& runs) {
 }
 
 /// Commanded time of each item: its segments, the waits at stops within it, half a period for each start, and the wait
-/// before the rapid that follows. Summed by hand, not read off the clock, whose whole periods a fit would stumble on.
+/// before the rapid that follows a whole stretch. Summed by hand, not read off the clock, whose whole periods a fit
+/// would stumble on.
 std::vector<double> times_s(const Data& data, const Machine& machine) {
-  std::vector<double> times(data.items.size(), machine.control.rapid_change_s);
+  std::vector<double> times;
+  for (const auto& item : data.items)
+    times.push_back(item.judged.timed.stretch.ends_in_motion() ? 0 : machine.control.rapid_change_s);
   std::size_t at = 0;
   for (std::size_t p = 0; p < data.programs.size(); ++p) {
     double end_s = 0;

@@ -15,14 +15,21 @@ nc::Move rest_before(const nc::Move& move) {
 }
 
 /// A stretch between the moves that surround it: a control may brake otherwise before a rapid than before a dwell.
-void append_stretch(nc::Interpretation& program, const std::vector<nc::Move>& moves, const FeedStretch& s) {
+/// A piece has the moves of its run around it instead. Returns where it is in the program.
+std::pair<std::size_t, std::size_t> append_stretch(nc::Interpretation& program, const nc::Interpretation& whole,
+                                                   const TimedStretch& timed) {
+  const FeedStretch& s = timed.stretch;
+  const std::vector<nc::Move>& moves = whole.moves;
   const auto is_rapid = [&](std::size_t i) { return moves[i].kind == nc::MoveKind::rapid && !moves[i].reference; };
-  const bool rapid_before = s.move_first > 0 && is_rapid(s.move_first - 1);
-  const bool rapid_after = s.move_end < moves.size() && is_rapid(s.move_end);
-  const std::size_t from = s.move_first - (rapid_before ? 1 : 0), to = s.move_end + (rapid_after ? 1 : 0);
+  const StretchContext context = context_of(s, whole);
+  const bool rapid_before = context.first > 0 && context.first == s.run_first && is_rapid(context.first - 1);
+  const bool rapid_after = context.end < moves.size() && context.end == s.run_end && is_rapid(context.end);
+  const std::size_t from = context.first - (rapid_before ? 1 : 0), to = context.end + (rapid_after ? 1 : 0);
   program.moves.push_back(rest_before(moves[from]));
-  program.moves.insert(program.moves.end(), moves.begin() + static_cast<std::ptrdiff_t>(from),
-                       moves.begin() + static_cast<std::ptrdiff_t>(to));
+  const std::size_t shift = program.moves.size() - from;
+  const auto cut = moves_at_override(whole, from, to, timed.feed_factor);
+  program.moves.insert(program.moves.end(), cut.begin(), cut.end());
+  return {s.move_first + shift, s.move_end + shift};
 }
 
 LoggedLines lines_of(const StretchRun& run, int keep_back_every, std::size_t& count) {
@@ -35,7 +42,8 @@ LoggedLines lines_of(const StretchRun& run, int keep_back_every, std::size_t& co
   std::vector<TimedStretch> once = one_for_each_geometry(run.timed, run.program);
   std::ranges::sort(once, {}, [](const TimedStretch& t) { return t.stretch.move_first; });
   for (const TimedStretch& t : once) {
-    append_stretch(program, run.program.moves, t.stretch);
+    lines.moves.push_back(append_stretch(program, run.program, t));
+    lines.ends_in_motion.push_back(t.stretch.ends_in_motion());
     lines.parts.push_back(
         {t.stretch.line_first, t.stretch.line_last, run.program.moves[t.stretch.move_first].feed_mm_per_s});
     lines.time_s.push_back(t.time_s);

@@ -21,6 +21,7 @@ constexpr double kOverrideNoise = 0.5;   // %
 constexpr std::size_t kBrokenShown = 3;
 constexpr double kBrokenFraction = 0.05;
 constexpr std::size_t kFewestEvents = 3;
+constexpr std::string_view kPositionNames[] = {"abs", "act", "pos", "position", "actual", "actualposition"};
 
 /// Seconds since 1970 of 2017-02-14T14:56:22.9058750Z.
 std::optional<double> seconds_of(std::string_view text) {
@@ -65,9 +66,10 @@ class LogReader {
       fail_on_file(log_.path,
                    fmt::format("{} of {} lines are not timestamp|item|value; is this a machine log?", broken_, lines_),
                    "log-fields");
-    if (log_.line.empty())
+    if (log_.line.empty() && !has_positions(log_))
       fail_on_file(log_.path,
-                   "the log has no Block_Number; lines as 2017-02-14T14:56:34.62Z|Block_Number|18 were expected",
+                   "the log has no Block_Number and no Xabs, Yabs, Zabs; lines as "
+                   "2017-02-14T14:56:34.62Z|Block_Number|18 were expected",
                    "log-item");
     return std::move(log_);
   }
@@ -90,8 +92,7 @@ class LogReader {
       broken(offset);
       return;
     }
-    const std::string_view stamp = line.substr(0, bar), item = line.substr(bar + 1, bar2 - bar - 1),
-                           value = line.substr(bar2 + 1);
+    const std::string_view stamp = line.substr(0, bar);
     const auto seconds = seconds_of(stamp);
     if (!seconds) {
       report(Severity::error, offset,
@@ -105,18 +106,74 @@ class LogReader {
       return;
     }
     log_.any_s.push_back(t);
-    std::vector<LogEvent>* into = item == "Block_Number"    ? &log_.line
-                                  : item == "Feed_Rate"     ? &log_.feed_mm_per_s
-                                  : item == "Feed_Override" ? &log_.override_percent
-                                                            : nullptr;
-    if (!into || value.empty() || value == "UNAVAILABLE") return;
+    std::string_view rest = line.substr(bar + 1);
+    while (!rest.empty()) {
+      const std::size_t middle = rest.find('|');
+      if (middle == rest.npos) break;
+      const std::size_t end = std::min(rest.find('|', middle + 1), rest.size());
+      const std::string_view value = rest.substr(middle + 1, end - middle - 1);
+      add(t, rest.substr(0, middle), value, static_cast<std::size_t>(value.data() - source_.text().data()));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+  }
+
+  void add(double t, std::string_view item, std::string_view value, std::size_t offset) {
+    if (value.empty() || value == "UNAVAILABLE") return;
+    const std::string name = plain(item);
+    if (name == "pathposition" || name == "pathpos") return add_path_position(t, item, value, offset);
+    bool positive = true;
+    std::vector<LogEvent>* into = events_of(name, positive);
+    if (!into) return;
     const auto number = parse_number(value);
-    if (!number || *number < 0) {
-      report(Severity::error, offset + bar2 + 1,
-             fmt::format("{} is \"{}\"; a number that is not negative was expected", item, value), "log-number");
+    if (!number || (positive && *number < 0)) {
+      report(Severity::error, offset,
+             fmt::format("{} is \"{}\"; a number{} was expected", item, value, positive ? " that is not negative" : ""),
+             "log-number");
       return;
     }
     into->push_back({t, *number});
+  }
+
+  void add_path_position(double t, std::string_view item, std::string_view value, std::size_t offset) {
+    std::array<double, 3> xyz{};
+    std::string_view rest = value;
+    for (double& v : xyz) {
+      rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+      const std::size_t end = std::min(rest.find(' '), rest.size());
+      const auto number = parse_number(rest.substr(0, end));
+      if (!number) {
+        report(Severity::error, offset, fmt::format("{} is \"{}\"; three numbers were expected", item, value),
+               "log-number");
+        return;
+      }
+      v = *number;
+      rest.remove_prefix(end);
+    }
+    for (std::size_t i = 0; i < 3; ++i) log_.position_mm[i].push_back({t, xyz[i]});
+  }
+
+  /// Lower case, letters and digits alone.
+  static std::string plain(std::string_view item) {
+    std::string out;
+    for (const char c : item) {
+      const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+      if ((lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9')) out += lower;
+    }
+    return out;
+  }
+
+  std::vector<LogEvent>* events_of(const std::string& name, bool& positive) {
+    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+      return std::ranges::find(names, std::string_view(name)) != names.end();
+    };
+    if (is_one_of({"blocknumber", "linenumber", "line"})) return &log_.line;
+    if (is_one_of({"feedrate", "pathfeedrate", "fact", "feed"})) return &log_.feed_mm_per_s;
+    if (is_one_of({"feedoverride", "pathfeedrateoverride", "fovr"})) return &log_.override_percent;
+    const std::string_view axes = "xyz", after = std::string_view(name).substr(std::min<std::size_t>(1, name.size()));
+    const std::size_t axis = name.empty() ? axes.npos : axes.find(name[0]);
+    if (axis == axes.npos || std::ranges::find(kPositionNames, after) == std::end(kPositionNames)) return nullptr;
+    positive = false;
+    return &log_.position_mm[axis];
   }
 
   const SourceText& source_;
@@ -147,13 +204,18 @@ bool has_hold(const std::vector<LogEvent>& feed, double from, double to) {
   return false;
 }
 
-bool at_full_override(const std::vector<LogEvent>& overrides, double from, double to) {
+/// 1 for 100 %, also where the log does not tell; nothing where it changes.
+std::optional<double> constant_override(const std::vector<LogEvent>& overrides, double from, double to) {
+  std::optional<double> found;
   for (std::size_t i = 0; i < overrides.size(); ++i) {
     const double end = i + 1 < overrides.size() ? overrides[i + 1].t_s : INFINITY;
-    if (overrides[i].t_s < to && end > from && std::abs(overrides[i].value - kFullOverride) > kOverrideNoise)
-      return false;
+    if (overrides[i].t_s >= to || end <= from) continue;
+    if (found && std::abs(overrides[i].value - *found) > kOverrideNoise) return std::nullopt;
+    found = found.value_or(overrides[i].value);
   }
-  return true;
+  if (!found || std::abs(*found - kFullOverride) <= kOverrideNoise) return 1.0;
+  if (*found <= 0) return std::nullopt;
+  return *found / kFullOverride;
 }
 
 /// Interval at which the adapter looks: the median distance of line events that follow each other closely.
@@ -198,12 +260,48 @@ std::vector<TimedStretch> logged_stretches(const MachineLog& log, const std::vec
     if (end == log.line.size()) continue;
     i = end;
     const double from = log.line[first].t_s, to = log.line[end].t_s;
-    if (end - first < kFewestEvents || has_hole(log.any_s, from, to) || has_hold(log.feed_mm_per_s, from, to) ||
-        !at_full_override(log.override_percent, from, to))
-      continue;
-    timed.push_back({s, to - from, sigma});
+    const auto override = steady_override(log, from, to);
+    if (end - first < kFewestEvents || !override) continue;
+    timed.push_back({s, to - from, sigma, *override});
   }
   return timed;
+}
+
+std::optional<double> steady_override(const MachineLog& log, double from_s, double to_s) {
+  if (has_hole(log.any_s, from_s, to_s) || has_hold(log.feed_mm_per_s, from_s, to_s)) return std::nullopt;
+  return constant_override(log.override_percent, from_s, to_s);
+}
+
+bool has_positions(const MachineLog& log) {
+  return std::ranges::all_of(log.position_mm, [](const auto& events) { return !events.empty(); });
+}
+
+ServoTrace position_trace(const MachineLog& log) {
+  std::vector<double> times;
+  for (const auto& events : log.position_mm)
+    for (const LogEvent& e : events) times.push_back(e.t_s);
+  std::ranges::sort(times);
+  times.erase(std::ranges::unique(times).begin(), times.end());
+  ServoTrace trace;
+  trace.path = log.path;
+  trace.has_actual = {true, true, true};
+  std::array<std::size_t, 3> next{};
+  for (const double t : times) {
+    Vec3 at = Vec3::Zero();
+    bool known = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& events = log.position_mm[i];
+      while (next[i] < events.size() && events[next[i]].t_s <= t) ++next[i];
+      known = known && next[i] > 0;
+      if (next[i] > 0) at[static_cast<Eigen::Index>(i)] = events[next[i] - 1].value;
+    }
+    if (!known) continue;
+    trace.t_s.push_back(t);
+    trace.command_mm.emplace_back(Vec3::Zero());
+    trace.actual_mm.push_back(at);
+  }
+  if (trace.size() > 1) set_stretches(trace);
+  return trace;
 }
 
 }  // namespace camber::calib

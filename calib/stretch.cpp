@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kCopyLengthFraction = 0.09;  // copies at other offsets differ by so much in their lengths, on average
 constexpr double kCopyCornerRad = 0.05;       // and so much in their corners
+constexpr double kContextMm = 50;             // the way in which an axis brakes, and more
 constexpr double kTimeFloor = 0.02;           // s; an adapter's clock and median
 constexpr double kNormalP10P90 = 2.563;       // distance of the 10th and 90th percentile of a normal distribution
 constexpr double kMedianFraction = 1.253;     // error of a median over that of a mean
@@ -60,10 +61,10 @@ bool is_copy(const Shape& a, const Shape& b) {
 void number_geometries(const nc::Interpretation& program, std::vector<FeedStretch>& stretches) {
   struct First {
     Shape shape;
-    int geometry = 0;
+    std::int64_t geometry = 0;
   };
   std::map<std::size_t, std::vector<First>> by_count;
-  int geometries = 0;
+  std::int64_t geometries = 0;
   for (FeedStretch& s : stretches) {
     auto& firsts = by_count[s.move_end - s.move_first];
     Shape shape = shape_of(program, s);
@@ -88,7 +89,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 class TableReader {
  public:
   TableReader(const SourceText& source, const nc::Interpretation& program)
-      : source_(source), stretches_(feed_stretches(program)) {
+      : source_(source), program_(program), stretches_(feed_stretches(program)) {
     header_ = fields_of(source_.line(1));
   }
 
@@ -147,14 +148,24 @@ class TableReader {
     return *value;
   }
 
-  const FeedStretch& stretch_of(std::size_t line, double first, double last) const {
+  FeedStretch stretch_of(std::size_t line, double first, double last) const {
     for (const FeedStretch& s : stretches_)
       if (s.line_first == first && s.line_last == last) return s;
-    fail(line, fmt::format("lines {} to {} of the program are not one run of feed moves between rapids", first, last),
+    for (const FeedStretch& s : stretches_) {
+      if (first < s.line_first || last > s.line_last || first > last) continue;
+      const auto line_of = [&](std::size_t m) { return program_.moves[m].block + 1; };
+      std::size_t from = s.move_first, end = s.move_end;
+      while (from < end && line_of(from) < first) ++from;
+      while (end > from && line_of(end - 1) > last) --end;
+      if (from < end) return piece_of(s, program_, from, end);
+    }
+    fail(line,
+         fmt::format("lines {} to {} of the program are not within one run of feed moves between rapids", first, last),
          "stretch-lines");
   }
 
   const SourceText& source_;
+  const nc::Interpretation& program_;
   std::vector<FeedStretch> stretches_;
   std::vector<std::string_view> header_;
 };
@@ -177,8 +188,35 @@ std::vector<FeedStretch> feed_stretches(const nc::Interpretation& program) {
     stretches.back().move_end = i + 1;
     open = true;
   }
+  for (FeedStretch& s : stretches) {
+    s.run_first = s.move_first;
+    s.run_end = s.move_end;
+  }
   number_geometries(program, stretches);
   return stretches;
+}
+
+FeedStretch piece_of(const FeedStretch& run, const nc::Interpretation& program, std::size_t move_first,
+                     std::size_t move_end) {
+  FeedStretch piece = run;
+  piece.move_first = move_first;
+  piece.move_end = move_end;
+  piece.line_first = program.moves[move_first].block + 1;
+  piece.line_last = program.moves[move_end - 1].block + 1;
+  if (!piece.begins_in_motion() && !piece.ends_in_motion()) return run;
+  // Below those of whole stretches, which are no copies of it.
+  piece.geometry = -1 - static_cast<std::int64_t>(move_first * (program.moves.size() + 1) + move_end);
+  return piece;
+}
+
+StretchContext context_of(const FeedStretch& stretch, const nc::Interpretation& program) {
+  StretchContext context{stretch.move_first, stretch.move_end};
+  double before_mm = 0, after_mm = 0;
+  while (context.first > stretch.run_first && before_mm < kContextMm)
+    before_mm += length_mm(program, program.moves[--context.first]);
+  while (context.end < stretch.run_end && after_mm < kContextMm)
+    after_mm += length_mm(program, program.moves[context.end++]);
+  return context;
 }
 
 bool is_stretch_table(const std::string& path) {
@@ -192,11 +230,29 @@ std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::
   return TableReader(source, program).run();
 }
 
+double programmed_length_mm(const FeedStretch& stretch, const nc::Interpretation& program) {
+  double length = 0;
+  for (std::size_t i = stretch.move_first; i < stretch.move_end; ++i) length += length_mm(program, program.moves[i]);
+  return length;
+}
+
 double programmed_time_s(const FeedStretch& stretch, const nc::Interpretation& program) {
   double time = 0;
   for (std::size_t i = stretch.move_first; i < stretch.move_end; ++i)
     time += length_mm(program, program.moves[i]) / program.moves[i].feed_mm_per_s;
   return time;
+}
+
+double programmed_time_s(const TimedStretch& timed, const nc::Interpretation& program) {
+  return programmed_time_s(timed.stretch, program) / timed.feed_factor;
+}
+
+std::vector<nc::Move> moves_at_override(const nc::Interpretation& program, std::size_t first, std::size_t end,
+                                        double feed_factor) {
+  std::vector<nc::Move> moves(program.moves.begin() + static_cast<std::ptrdiff_t>(first),
+                              program.moves.begin() + static_cast<std::ptrdiff_t>(end));
+  for (nc::Move& move : moves) move.feed_mm_per_s *= feed_factor;
+  return moves;
 }
 
 std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>& all,
@@ -205,18 +261,18 @@ std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>&
     const TimedStretch* first = nullptr;
     double weight = 0, ratio = 0;
   };
-  std::map<int, Sum> sums;
+  std::map<std::pair<std::int64_t, double>, Sum> sums;
   for (const TimedStretch& t : all) {
-    Sum& sum = sums[t.stretch.geometry];
+    Sum& sum = sums[{t.stretch.geometry, t.feed_factor}];
     if (!sum.first) sum.first = &t;
     const double weight = 1.0 / (t.sigma_s * t.sigma_s);
     sum.weight += weight;
-    sum.ratio += weight * t.time_s / programmed_time_s(t.stretch, program);
+    sum.ratio += weight * t.time_s / programmed_time_s(t, program);
   }
   std::vector<TimedStretch> result;
   for (const auto& [geometry, sum] : sums) {
     TimedStretch t = *sum.first;
-    t.time_s = sum.ratio / sum.weight * programmed_time_s(t.stretch, program);
+    t.time_s = sum.ratio / sum.weight * programmed_time_s(t, program);
     t.sigma_s = std::max(kTimeFloor, 1.0 / std::sqrt(sum.weight));
     result.push_back(t);
   }

@@ -9,19 +9,25 @@
 
 namespace camber::calib {
 
-/// Lines of the program from one rapid, dwell or tool change to the next, 1-based, both included.
+/// Lines of the program from one rapid, dwell or tool change to the next, 1-based, both included; or a piece of such a
+/// run, which begins or ends in motion.
 struct FeedStretch {
   std::uint32_t line_first = 0, line_last = 0;
   std::size_t move_first = 0, move_end = 0;  ///< of the interpretation
+  std::size_t run_first = 0, run_end = 0;    ///< moves of the whole run
   int tool = 0;
-  int geometry = 0;  ///< equal for stretches of one shape (copies at other places or depths)
+  std::int64_t geometry = 0;  ///< equal for stretches of one shape (copies at other places or depths)
+
+  bool begins_in_motion() const { return move_first > run_first; }
+  bool ends_in_motion() const { return move_end < run_end; }
 };
 
 /// A stretch and its time on the machine.
 struct TimedStretch {
   FeedStretch stretch;
   double time_s = 0;
-  double sigma_s = 0;  ///< uncertainty of the time
+  double sigma_s = 0;      ///< uncertainty of the time
+  double feed_factor = 1;  ///< feed override while it was cut
 };
 
 /// A program and the times that were logged of its stretches.
@@ -36,11 +42,22 @@ struct StretchRun {
 /// much, and the sorted corners by less than 0.05 rad, on average.
 std::vector<FeedStretch> feed_stretches(const nc::Interpretation& program);
 
+/// A piece of a run, by its moves. Its geometry is its own.
+FeedStretch piece_of(const FeedStretch& run, const nc::Interpretation& program, std::size_t move_first,
+                     std::size_t move_end);
+
+/// Moves of the run around a stretch that decide how fast it begins and ends: 50 mm before and after it. [first, end)
+struct StretchContext {
+  std::size_t first = 0, end = 0;
+};
+StretchContext context_of(const FeedStretch& stretch, const nc::Interpretation& program);
+
 /// Whether a file is a table of stretch times: its header names line_first or first_line.
 bool is_stretch_table(const std::string& path);
 
 /// Reads a CSV with the columns first_line, last_line and t_measured_median_s, or time_s (t_p10, t_p90 and n_parts tell
-/// the error, where they are there); lines that are no stretch of the program are errors [stretch-lines]. Throws
+/// the error, where they are there). Lines are a whole stretch of the program or any piece of one; others are errors
+/// [stretch-lines]. Throws
 /// InputError: [stretch-column], [stretch-number], [stretch-lines], [file-missing].
 std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::Interpretation& program);
 
@@ -49,7 +66,14 @@ std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::
 std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>& all,
                                                 const nc::Interpretation& program);
 
+double programmed_length_mm(const FeedStretch& stretch, const nc::Interpretation& program);
+
 /// Length / programmed feed over all moves of a stretch.
 double programmed_time_s(const FeedStretch& stretch, const nc::Interpretation& program);
+/// The same at the override at which it was cut.
+double programmed_time_s(const TimedStretch& timed, const nc::Interpretation& program);
+/// The moves of a program from `first` to `end` at an override.
+std::vector<nc::Move> moves_at_override(const nc::Interpretation& program, std::size_t first, std::size_t end,
+                                        double feed_factor);
 
 }  // namespace camber::calib

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kGapPeriods = 1.5;  // more than this between two samples is a hole
 constexpr std::size_t kGapsShown = 5;
+constexpr double kMaxLine = 4e9;
 
 /// By Quantity.
 constexpr std::array<std::string_view, kQuantities> kColumnNames = {
@@ -129,7 +130,7 @@ class Reader {
       if (!columns_[i]) continue;
       const std::optional<double> value = parse_number(fields_[i].text);
       const auto column = static_cast<std::size_t>(*columns_[i]);
-      if (!value || !std::isfinite(*value) || (columns_[i] == Quantity::line && *value < 0)) {
+      if (!value || !std::isfinite(*value) || (columns_[i] == Quantity::line && (*value < 0 || *value > kMaxLine))) {
         report(Severity::error, fields_[i],
                fmt::format("{} is \"{}\"; a number is expected", kColumnNames[column], fields_[i].text),
                "trace-number");
@@ -191,6 +192,20 @@ class Reader {
 };
 
 }  // namespace
+
+double joint_position(const ServoTrace& trace, std::size_t sample, std::size_t joint) {
+  const auto i = static_cast<Eigen::Index>(joint % 3);
+  if (joint < 3) return trace.has_command[joint] ? trace.command_mm[sample][i] : trace.actual_mm[sample][i];
+  if (trace.rotary_command_deg.empty()) return 0;
+  return trace.has_rotary_command[joint - 3] ? trace.rotary_command_deg[sample][i] : trace.rotary_actual_deg[sample][i];
+}
+
+double joint_step(const ServoTrace& trace, std::size_t from, std::size_t to) {
+  double most = 0;
+  for (std::size_t joint = 0; joint < kJoints; ++joint)
+    most = std::max(most, std::abs(joint_position(trace, to, joint) - joint_position(trace, from, joint)));
+  return most;
+}
 
 std::vector<std::size_t> set_stretches(ServoTrace& trace) {
   std::vector<double> steps(trace.size() - 1);

@@ -52,6 +52,13 @@ struct ServoTrace {
   std::size_t size() const { return t_s.size(); }
 };
 
+inline constexpr std::size_t kJoints = 6;  ///< x, y, z, a, b, c
+
+/// Position of a joint in a sample, mm or degrees: as commanded where the trace has it.
+double joint_position(const ServoTrace& trace, std::size_t sample, std::size_t joint);
+/// The largest way of a joint between two samples.
+double joint_step(const ServoTrace& trace, std::size_t from, std::size_t to);
+
 /// Sets period (median distance of the samples) and stretches from the times; returns the samples after a gap.
 std::vector<std::size_t> set_stretches(ServoTrace& trace);
 

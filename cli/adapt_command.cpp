@@ -9,6 +9,7 @@
 #include "base/stage.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "machine/assumptions.h"
 #include "report/adapt_summary.h"
 
 namespace camber::cli {
@@ -37,10 +38,16 @@ int run_adapt(const AdaptArguments& arguments, const GlobalOptions& options) {
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::vector<std::string> failures = report::adapt_failures(result);
   const bool written = failures.empty() || arguments.keep_anyway;
+  const std::vector<std::string> assumed = machine::assumptions(job);
   Diagnostics failed;
   if (written) try_to_write([&] { write_file(arguments.output, result.text); }, failed);
   if (!arguments.json.empty())
-    try_to_write([&] { write_file(arguments.json, report::adapt_json(result, *job.adapt, compute_s)); }, failed);
+    try_to_write(
+        [&] {
+          write_file(arguments.json,
+                     machine::with_assumptions(report::adapt_json(result, *job.adapt, compute_s), assumed));
+        },
+        failed);
   if (!arguments.report.empty())
     try_to_write(
         [&] {
@@ -49,7 +56,7 @@ int run_adapt(const AdaptArguments& arguments, const GlobalOptions& options) {
                                         warnings_of(diagnostics)));
         },
         failed);
-  if (!options.quiet) fmt::print("{}", report::adapt_text(result, compute_s));
+  if (!options.quiet) fmt::print("{}{}", machine::assumptions_text(assumed), report::adapt_text(result, compute_s));
   failed.throw_if_errors();
   for (const std::string& failure : failures) print_error(failure);
   if (!written) print_error(fmt::format("{} was not written; --keep-anyway writes it all the same", arguments.output));

@@ -1,20 +1,28 @@
 #include "cli/check_command.h"
 
+#include <memory>
 #include <optional>
 #include <ostream>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "api/commands/check.h"
 #include "api/commands/explain_kinematics.h"
+#include "api/commands/program_sequence.h"
 #include "base/mesh_file.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
+#include "base/temporary_folder.h"
 #include "cli/check_page.h"
+#include "feedmodel/cycle_time.h"
 #include "kinematics/pose_track.h"
-#include "machine/job.h"
+#include "machine/assumptions.h"
+#include "machine/job_programs.h"
 #include "nc/program.h"
 #include "report/planned_picture.h"
+#include "report/setup_sheet.h"
 
 namespace camber::cli {
 namespace {
@@ -24,6 +32,9 @@ struct Checked {
   CheckPicture picture;  ///< where a page is asked for
   std::vector<kinematics::FeedMeaningUse> feed_meanings{};
   std::optional<double> memory_bytes{};  ///< where a job is given
+  std::vector<std::string> assumed{};    ///< of job or machine
+  std::unique_ptr<nc::Program> text{};   ///< where it is, its moves' places are
+  nc::Interpretation moves{};            ///< where a sheet is asked for
 };
 
 /// As the control of the machine plans it, where a machine is known; the machine itself where rotary axes turn.
@@ -50,17 +61,19 @@ CheckPicture picture_of(const nc::Interpretation& moves, const machine::Machine*
   return picture;
 }
 
-Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
-  std::optional<machine::Job> job;
+Checked read_and_summarize(const CheckCommand& command, const std::optional<machine::Job>& job, Diagnostics& found) {
   std::optional<machine::Machine> machine;
-  if (!command.job.empty()) {
-    job = machine::read_job(command.job, found);
+  if (job)
     machine = job->machine;
-  } else if (!command.machine.empty()) {
+  else if (!command.machine.empty())
     machine = machine::read_machine(command.machine, found);
-  }
-  const nc::Program text = nc::read_program(SourceText::read(command.program), found);
   Checked checked;
+  checked.text = std::make_unique<nc::Program>(nc::read_program(SourceText::read(command.program), found));
+  const nc::Program& text = *checked.text;
+  if (job)
+    checked.assumed = machine::assumptions(*job);
+  else if (machine)
+    checked.assumed = machine::assumptions(*machine);
   bool shows_machine = false;
   const auto read = [&](const nc::Interpretation& moves) {
     if (command.report.empty()) return;
@@ -69,11 +82,12 @@ Checked read_and_summarize(const CheckCommand& command, Diagnostics& found) {
     shows_machine = checked.picture.machine.has_value();
   };
   try {
-    const api::CheckedProgram program = api::check_program(text, command.interpreter, machine ? &*machine : nullptr,
-                                                           job ? &*job : nullptr, found, read);
+    api::CheckedProgram program = api::check_program(text, command.interpreter, machine ? &*machine : nullptr,
+                                                     job ? &*job : nullptr, found, read);
     checked.summary = program.summary;
     checked.feed_meanings = program.feed_meanings;
     checked.memory_bytes = program.memory_bytes;
+    if (!command.sheet.empty()) checked.moves = std::move(program.moves);
   } catch (const InputError& e) {
     // The page shows which axis leaves its travel, and where.
     Diagnostics ordered;
@@ -139,25 +153,74 @@ std::string check_report(const std::string& program, const nc::Summary& s, const
   return out;
 }
 
-int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out,
-              const std::function<void()>& before_output) {
-  Diagnostics found;
+namespace {
+
+/// By line and column; `found`: what was found of the job.
+Checked checked_in_order(const CheckCommand& command, const std::optional<machine::Job>& job, Diagnostics found,
+                         Diagnostics& ordered) {
   Checked checked;
   try {
-    checked = read_and_summarize(command, found);
+    checked = read_and_summarize(command, job, found);
   } catch (const InputError& e) {
     throw InputError(api::in_order(e.diagnostics()));
   }
-  Diagnostics ordered;
   for (auto& d : api::in_order(found.all())) ordered.add(std::move(d));
+  return checked;
+}
+
+std::string json_of(const CheckCommand& command, const Checked& checked, const Diagnostics& ordered) {
+  return machine::with_assumptions(
+      api::check_json(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings),
+      checked.assumed);
+}
+
+std::string sheet_text(const machine::Job& job, const std::vector<Checked>& programs, const Diagnostics& found) {
+  report::SetupSheet sheet{job, {}, {}};
+  for (const Checked& p : programs)
+    sheet.programs.push_back({*p.text, p.moves, p.summary, feedmodel::cycle_time(p.moves, job.machine)});
+  for (const Diagnostic& d : found.all()) sheet.warnings.push_back(to_string(d));
+  return report::setup_sheet_html(sheet);
+}
+
+}  // namespace
+
+int run_check(const CheckCommand& given, Diagnostics& diagnostics, std::ostream& out,
+              const std::function<void()>& before_output) {
+  CheckCommand command = given;
+  std::optional<machine::JobOfPrograms> all;
+  Diagnostics of_job;
+  if (!given.job.empty()) all = machine::read_job_of_programs(given.job, of_job);
+  if (all && !given.program.empty()) all->programs = {given.program};
+  const std::vector<std::string> names = all ? all->programs : std::vector{given.program};
+  const TemporaryFolder folder;
+  std::vector<Checked> programs;
+  std::vector<std::string> results;
+  std::string text, stock;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    command.program = names[i];
+    if (i > 0) {
+      // The blank of the next program is what the undeflected tools of this one leave.
+      const std::string left = fmt::format("{}/{}.vdb", folder.path(), i);
+      api::save_swept_stock(api::job_of_program(*all, i - 1, stock), left);
+      stock = left;
+    }
+    std::optional<machine::Job> own;
+    if (all) own = api::job_of_program(*all, i, stock);
+    Diagnostics ordered;
+    programs.push_back(checked_in_order(command, own, i == 0 ? of_job : Diagnostics(), ordered));
+    const Checked& checked = programs.back();
+    results.push_back(json_of(command, checked, ordered));
+    if (!command.report.empty() && i == 0)
+      write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
+    text += (i > 0 ? "\n" : machine::assumptions_text(checked.assumed)) +
+            check_report(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings);
+    diagnostics.append(ordered);
+  }
   if (!command.json.empty())
-    write_file(command.json,
-               api::check_json(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings));
-  if (!command.report.empty())
-    write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
+    write_file(command.json, results.size() == 1 ? results.front() : api::join_results(*all, results, names));
+  if (!command.sheet.empty()) write_file(command.sheet, sheet_text(all->job, programs, diagnostics));
   if (before_output) before_output();
-  out << check_report(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings);
-  diagnostics.append(ordered);
+  out << text;
   return 0;
 }
 

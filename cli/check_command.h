@@ -13,11 +13,12 @@
 namespace camber::cli {
 
 struct CheckCommand {
-  std::string program;
+  std::string program;             ///< empty: the job's
   std::string json;                ///< file for the figures; empty: none
   std::string report;              ///< page with the path's picture; empty: none
   std::string machine;             ///< machine.toml; empty: none
   std::string job;                 ///< job.toml, whose machine counts; empty: none
+  std::string sheet{};             ///< set-up sheet; needs a job; empty: none
   std::string explain_kinematics;  ///< machine.toml or job.toml to explain instead of a program; empty: none
   nc::InterpreterOptions interpreter;
 };

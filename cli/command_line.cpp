@@ -49,6 +49,9 @@ int guarded(const Action& action, const GlobalOptions& options) {
     return action();
   } catch (const InputError& problem) {
     print_diagnostics(problem.diagnostics(), options);
+  } catch (const BeyondModel& beyond) {
+    print_error(beyond.what());
+    return kNumbersDidNotWorkOut;
   } catch (const std::bad_alloc&) {
     print_error("not enough memory; a larger voxel_mm, a smaller stock or fewer threads need less [memory]");
   } catch (const std::exception& problem) {

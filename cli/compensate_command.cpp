@@ -1,16 +1,24 @@
 #include "cli/compensate_command.h"
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "api/commands/compensate.h"
+#include "api/commands/program_sequence.h"
 #include "base/output_file.h"
 #include "base/stage.h"
+#include "base/temporary_folder.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/rounds_progress.h"
 #include "compensate/trial.h"
+#include "machine/assumptions.h"
+#include "machine/job_programs.h"
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
@@ -56,11 +64,14 @@ api::CompensateRequest compensate_request(const CompensateArguments& arguments) 
           .progress = {}};
 }
 
-int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
+namespace {
+
+/// `diagnostics`: of the job. `json`: the figures; empty where there are none. `emitted`: whether a program was
+/// written.
+int compensate_program(const machine::Job& given, Diagnostics diagnostics, const CompensateArguments& arguments,
+                       const GlobalOptions& options, std::string& json, bool& emitted) {
   const auto begin = std::chrono::steady_clock::now();
-  Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
-  const machine::Job given = machine::read_job(arguments.job, diagnostics);
   bool in_rounds = false;  // their share is that of the whole run
   const StageScope stages([&](const std::string& what, double share) {
     if (!in_rounds) progress.show(what, share);
@@ -89,6 +100,7 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   print_translation(job.machine.translation, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
+  const std::vector<std::string> assumed = machine::assumptions(given);
   for (const auto& name : result.unknown_parameters)
     if (!options.quiet)
       fmt::print(stderr, "camber: warning: --uncertainty: {} is not a parameter of the job; ignored [uncertainty]\n",
@@ -96,15 +108,16 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
   Diagnostics failed;
   const bool written = !arguments.dry_run && (result.better || arguments.keep_anyway);
   if (written) try_to_write([&] { api::write_compensated(arguments.output, job, result); }, failed);
-  if (!arguments.json.empty())
-    try_to_write([&] { write_file(arguments.json, report::compensate_json(result, job.compensation, compute_s)); },
-                 failed);
+  emitted = written;
+  json = machine::with_assumptions(report::compensate_json(result, job.compensation, compute_s), assumed);
+  if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
   in_rounds = false;
   progress.show("writing the report");
   if (!arguments.report.empty()) try_to_write([&] { write_report(arguments, job, result, diagnostics); }, failed);
   progress.clear();
 
-  if (!options.quiet) fmt::print("{}", report::compensate_text(result, compute_s));
+  if (!options.quiet)
+    fmt::print("{}{}", machine::assumptions_text(assumed), report::compensate_text(result, compute_s));
   failed.throw_if_errors();
   const report::VerdictText verdict = report::verdict_text(result, job.compensation);
   if (!verdict.success) {
@@ -115,6 +128,66 @@ int run_compensate(const CompensateArguments& arguments, const GlobalOptions& op
     print_error(
         fmt::format("{} was not written; --keep-anyway writes the round with the smallest error", arguments.output));
   return verdict.success ? kDone : kNumbersDidNotWorkOut;
+}
+
+/// "report.html" of "1-rough": "report-1-rough.html".
+std::string own_name(const std::string& path, const std::string& program) {
+  if (path.empty()) return {};
+  const std::filesystem::path p(path);
+  return (p.parent_path() / fmt::format("{}-{}{}", p.stem().string(), program, p.extension().string())).string();
+}
+
+/// Each program on what the compensated one before it has left; the emitted programs have the names of the given ones,
+/// in the folder of the output.
+int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& diagnostics,
+                       const CompensateArguments& arguments, const GlobalOptions& options) {
+  if (!arguments.measured.empty()) {
+    print_error("--measured belongs to one program, and the job has several");
+    return kCommandLineWrong;
+  }
+  int status = kDone;
+  const TemporaryFolder folder;
+  std::string stock;
+  std::vector<std::string> results, outputs;
+  for (std::size_t i = 0; i < all.programs.size(); ++i) {
+    const machine::Job one = api::job_of_program(all, i, stock);
+    const std::string name = api::name_of_program(all.programs, i);
+    CompensateArguments own = arguments;
+    if (!arguments.dry_run) {
+      make_folder(arguments.output);
+      own.output = (std::filesystem::path(arguments.output) / std::filesystem::path(one.program).filename()).string();
+      if (std::ranges::find(outputs, own.output) != outputs.end())
+        own.output =
+            (std::filesystem::path(arguments.output) / (name + std::filesystem::path(one.program).extension().string()))
+                .string();
+      check_outputs({own.output}, all.programs);
+    }
+    own.report = own_name(arguments.report, name);
+    own.json.clear();
+    if (!options.quiet) fmt::print("{}{}\n", i > 0 ? "\n" : "", one.program);
+    bool emitted = false;
+    status = std::max(status, compensate_program(one, i == 0 ? diagnostics : Diagnostics(), own, options,
+                                                 results.emplace_back(), emitted));
+    outputs.push_back(emitted ? own.output : "");
+    if (i + 1 == all.programs.size()) break;
+    machine::Job left = one;
+    if (emitted) left.program = own.output;
+    stock = folder.path() + "/" + name + ".vdb";
+    api::save_stock_after(left, stock);
+  }
+  if (!arguments.json.empty()) write_file(arguments.json, api::join_results(all, results, outputs));
+  return status;
+}
+
+}  // namespace
+
+int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
+  Diagnostics diagnostics;
+  const machine::JobOfPrograms all = machine::read_job_of_programs(arguments.job, diagnostics);
+  if (all.programs.size() > 1) return compensate_in_turn(all, diagnostics, arguments, options);
+  std::string json;
+  bool emitted = false;
+  return compensate_program(all.job, std::move(diagnostics), arguments, options, json, emitted);
 }
 
 }  // namespace camber::cli

@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "machine/assumptions.h"
 #include "report/copy_page.h"
 #include "report/copy_summary.h"
 
@@ -65,6 +66,7 @@ int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
   progress.clear();
   settle(diagnostics, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::vector<std::string> assumed = machine::assumptions(job.job);
   Diagnostics failed;
   try_to_write([&] { write_file(arguments.output, result.text); }, failed);
   if (stream) try_to_write([&] { stream->commit(); }, failed);
@@ -79,8 +81,10 @@ int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
         },
         failed);
   if (!arguments.json.empty())
-    try_to_write([&] { write_file(arguments.json, report::copy_json(result, compute_s)); }, failed);
-  if (!options.quiet) fmt::print("{}", report::copy_text(result, compute_s));
+    try_to_write(
+        [&] { write_file(arguments.json, machine::with_assumptions(report::copy_json(result, compute_s), assumed)); },
+        failed);
+  if (!options.quiet) fmt::print("{}{}", machine::assumptions_text(assumed), report::copy_text(result, compute_s));
   failed.throw_if_errors();
   return kDone;
 }

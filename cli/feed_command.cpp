@@ -12,6 +12,7 @@
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/joint_map.h"
 #include "feedmodel/timed_path.h"
+#include "machine/assumptions.h"
 #include "machine/machine.h"
 #include "nc/program.h"
 #include "report/timed_track.h"
@@ -51,10 +52,12 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   progress.clear();
 
   if (!options.quiet)
-    fmt::print("time          {:.3f} s\ncutting time  {:.3f} s\nblocks        {}\n", summary.time_s,
-               summary.cutting_time_s, summary.blocks);
+    fmt::print("{}time          {:.3f} s\ncutting time  {:.3f} s\nblocks        {}\n",
+               machine::assumptions_text(machine::assumptions(machine)), summary.time_s, summary.cutting_time_s,
+               summary.blocks);
   if (!options.quiet && summary.contour) fmt::print("{}", api::contour_text(*summary.contour));
-  if (!arguments.json.empty()) write_file(arguments.json, api::feed_json(summary));
+  if (!arguments.json.empty())
+    write_file(arguments.json, machine::with_assumptions(api::feed_json(summary), machine::assumptions(machine)));
   if (!arguments.report.empty())
     write_file(arguments.report,
                feed_page({arguments.program, arguments.machine, summary, track.take()}, moves, machine, diagnostics));

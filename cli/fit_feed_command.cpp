@@ -24,10 +24,12 @@ using calib::FitFeedResult;
 double percent(double value, double reference) { return 100 * (value / reference - 1); }
 
 void print_parameters(const std::vector<calib::FitParameter>& parameters) {
-  fmt::print("{:<44} {:>14} {:<7} {:>12}\n", "parameter", "value", "unit", "std error");
+  fmt::print("{:<44} {:>14} {:<7} {:>12} {:>5} {:>10}\n", "parameter", "value", "unit", "std error", "from", "before");
   for (const calib::FitParameter& p : parameters)
-    fmt::print("{:<44} {:>14.6g} {:<7} {:>12}  {}\n", p.name, p.value, p.unit,
-               p.std_error ? fmt::format("{:.2g}", *p.std_error) : "-", p.note);
+    fmt::print("{:<44} {:>14.6g} {:<7} {:>12} {:>5} {:>10}  {}\n", p.name, p.value, p.unit,
+               p.std_error ? fmt::format("{:.2g}", *p.std_error) : "-",
+               p.stretches > 0 ? fmt::format("{}", p.stretches) : "-",
+               p.changed_from ? fmt::format("{:.6g}", *p.changed_from) : "-", p.note);
 }
 
 void print_laws(const FitFeedResult& result) {
@@ -78,6 +80,9 @@ void print(const FitFeedResult& result) {
   };
   line("fitted", result.fitted);
   line("held out", result.held_out);
+  if (result.promise)
+    fmt::print("time of a next program like the parts held out: {:+.2f} to {:+.2f} % off in 19 of 20 cases\n",
+               result.promise->low_percent, result.promise->high_percent);
   for (const calib::RunAccuracy& run : result.runs)
     fmt::print("{}: {:.2f} s traced, {:.2f} s predicted ({:+.2f} %), path speed rms {:.2f} %, p95 {:.2f} %\n",
                run.program_name, run.accuracy.time_trace_s, run.accuracy.time_model_s, run.accuracy.time_error_percent,
@@ -188,7 +193,7 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   print_translation(start.translation, options);
   if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);
   ProgressLine progress(options, "fitting");
-  const api::FeedFit fit = api::fit_runs(runs, start);
+  const api::FeedFit fit = api::fit_runs(runs, start, {.update = arguments.update});
   progress.clear();
   const int status = finish(fit, arguments, options);
   if (!arguments.leave_one_out || std::holds_alternative<calib::StretchFit>(fit)) return status;

@@ -12,6 +12,8 @@
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
+#include "machine/assumptions.h"
+#include "machine/machine_presets.h"
 #include "machine/material_presets.h"
 #include "nc/program.h"
 #include "report/job_proposal.h"
@@ -23,23 +25,49 @@ namespace fs = std::filesystem;
 
 /// A file's name as a job in another folder writes it.
 std::string seen_from(const std::string& file, const std::string& job) {
-  if (file.empty()) return {};
+  if (file.empty() || machine::is_preset(file)) return file;
   const fs::path folder = fs::absolute(job).parent_path();
   return fs::absolute(file).lexically_normal().lexically_proximate(folder.lexically_normal()).string();
 }
 
 /// Comments of the program come first: they belong to it.
-std::vector<machine::ToolProposal> all_tools(const SourceText& program, const InitArguments& arguments, bool inch) {
+std::vector<machine::ToolProposal> all_tools(const SourceText& program, const InitArguments& arguments, bool inch,
+                                             Diagnostics& diagnostics) {
   std::vector<machine::ToolProposal> out = machine::tools_in_comments(program, inch);
-  for (const auto& path : arguments.tools)
-    for (auto& tool : machine::read_tools(path, inch)) {
-      const auto same = std::find_if(out.begin(), out.end(), [&](const auto& t) { return t.number == tool.number; });
-      if (same == out.end())
-        out.push_back(std::move(tool));
-      else
-        machine::complete(*same, tool);
-    }
+  for (const auto& path : arguments.tools) machine::add_tools(out, machine::read_tools(path, inch, diagnostics));
   return out;
+}
+
+}  // namespace
+
+namespace {
+
+/// A preset as a machine file to start from.
+int write_machine(const InitArguments& arguments, const GlobalOptions& options) {
+  const machine::MachinePreset* preset = machine::find_machine_preset(arguments.machine);
+  write_file(arguments.output, machine::machine_preset_text(*preset));
+  if (!options.quiet)
+    fmt::print("{}: {}; all values are typical of the class: docs/guide/machine-file.md\n", arguments.output,
+               preset->what);
+  return kDone;
+}
+
+/// A preset that is there, or a file.
+CLI::Validator machine_name() {
+  return CLI::Validator(
+      [](std::string& name) {
+        return machine::is_preset(name) && !machine::find_machine_preset(name) ? machine::unknown_machine_preset(name)
+                                                                               : std::string();
+      },
+      "");
+}
+
+CLI::Validator material_name() {
+  return CLI::Validator(
+      [](std::string& name) {
+        return machine::find_material(name).preset ? std::string() : machine::unknown_material(name);
+      },
+      "");
 }
 
 }  // namespace
@@ -48,46 +76,62 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   std::error_code ec;
   if (fs::exists(arguments.output, ec))
     fail_on_file(arguments.output, "already exists; a new name was expected", "file-exists");
+  if (arguments.program.empty()) return write_machine(arguments, options);
   Diagnostics diagnostics;
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const nc::Interpretation moves = nc::interpret(text, arguments.interpreter, diagnostics);
-  settle(diagnostics, options);
   const nc::Summary summary = nc::summarize(text, moves);
-  const auto tools = all_tools(text.source, arguments, summary.has_inch);
+  const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
+  settle(diagnostics, options);
   write_file(arguments.output, report::job_text({seen_from(arguments.program, arguments.output),
                                                  seen_from(arguments.machine, arguments.output), summary, tools, text,
                                                  moves, arguments.material, arguments.interpreter.inch}));
-  if (!options.quiet) {
-    const auto cutting =
-        std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });
-    fmt::print("{}: {} tool{}; fill in the keys left as \"# key =\", check what is marked \"typical\"\n",
-               arguments.output, cutting, cutting == 1 ? "" : "s");
-  }
+  if (options.quiet) return kDone;
+  const auto cutting =
+      std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });
+  Diagnostics of_job;
+  fmt::print("{}{}: {} tool{}; what is assumed is marked \"typical\" or CHECK in it\n",
+             machine::assumptions_text(machine::assumptions(machine::read_job(arguments.output, of_job))),
+             arguments.output, cutting, cutting == 1 ? "" : "s");
   return kDone;
 }
 
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand("init", "write a draft job file from a program and tool tables");
+  auto* command = app.add_subcommand("init", "write a job that runs, from a program and tool tables");
   auto arguments = std::make_shared<InitArguments>();
-  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
-  command->add_option("-o,--output", arguments->output, "the new job file")->required()->type_name("job.toml");
+  auto* program = command->add_option("program", arguments->program, "NC program")->type_name("P.nc");
+  command->add_option("-o,--output", arguments->output, "the new job file; without a program the new machine file")
+      ->required()
+      ->type_name("job.toml");
   command
       ->add_option(
           "--tools", arguments->tools,
-          "LinuxCNC's tool table, or a tool library of Fusion (.json, .tools) or HSMWorks (.hsmlib); may be repeated")
+          "a tool library of Fusion (.json, .tools, .csv), HSMWorks (.hsmlib), FreeCAD (.fctl), Vectric (.vtdb) or "
+          "LinuxCNC (.tbl), or a folder of them; may be repeated")
       ->expected(1)
       ->take_all()
-      ->type_name("FILE");
-  command->add_option("--machine", arguments->machine, "the machine that the job names")->type_name("M.toml");
-  std::vector<std::string> presets;
-  for (const auto& preset : machine::material_presets()) presets.emplace_back(preset.name);
-  command->add_option("--material", arguments->material, "a material preset")
-      ->check(CLI::IsMember(presets).description(""))
-      ->type_name(fmt::format("{}", fmt::join(presets, "|")));
+      ->type_name("FILE|FOLDER");
+  std::vector<std::string_view> presets;
+  for (const auto& preset : machine::machine_presets()) presets.push_back(preset.name);
+  command
+      ->add_option("--machine", arguments->machine,
+                   fmt::format("the machine that the job names: a file, or typical values of a class, preset:{}",
+                               fmt::join(presets, ", preset:")))
+      ->check(machine_name())
+      ->type_name("M.toml|preset:NAME");
+  command
+      ->add_option(
+          "--material", arguments->material,
+          "by number or name (1.2343, 42CrMo4, 4140, SKD61, Al6082-T6 ...), with a hardness where it is not as "
+          "supplied: \"1.2379 60 HRC\"; default: C45, or aluminium at the speeds that only it is cut with")
+      ->check(material_name())
+      ->type_name("NAME");
   command->add_option("--units", arguments->interpreter.inch, "unit of a program without G20 and G21")
       ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"mm", false}, {"inch", true}}).description(""))
       ->type_name("mm|inch");
-  command->callback([arguments, &options, &chosen] {
+  command->callback([arguments, program, &options, &chosen] {
+    if (program->empty() && !machine::is_preset(arguments->machine))
+      throw CLI::RequiredError("P.nc or --machine preset:NAME");
     chosen = [arguments, &options] {
       check_outputs({arguments->output}, {});
       return run_init(*arguments, options);

@@ -16,7 +16,7 @@
 #include "cli/study_command.h"
 #include "cli/verify_command.h"
 #include "compensate/verify.h"
-#include "machine/job.h"
+#include "machine/job_programs.h"
 
 namespace camber::cli {
 namespace {
@@ -32,10 +32,16 @@ int print_effective_job(const std::string& path, const GlobalOptions& options) {
 /// Every file that a job names, and those of the command line.
 std::vector<std::string> files_read(const std::string& job_path, std::vector<std::string> others = {}) {
   Diagnostics diagnostics;
-  const machine::Job job = machine::read_job(job_path, diagnostics);
+  const auto [job, programs] = machine::read_job_of_programs(job_path, diagnostics);
+  others.insert(others.end(), programs.begin(), programs.end());
   others.insert(others.end(), {job_path, job.program, job.machine_path, job.stock.mesh, job.stock.vdb, job.part.mesh,
                                job.part.program});
   return others;
+}
+
+bool has_several_programs(const std::string& job_path) {
+  Diagnostics ignored;  // the command reads the job again
+  return machine::read_job_of_programs(job_path, ignored).programs.size() > 1;
 }
 
 void add_section_options(CLI::App& command, SectionsArguments& parts, CLI::Option& trace) {
@@ -91,8 +97,12 @@ void add_predict(CLI::App& app, const GlobalOptions& options, Action& chosen) {
                    "a map of the trace's columns, if they are not t_s, x_act_mm, y_act_mm, z_act_mm ...")
       ->type_name("MAP.toml")
       ->needs(trace);
+  auto* meshes = command->add_flag("--meshes", arguments->meshes,
+                                   "also write machined.stl and machined.ply, the machined part, and "
+                                   "form_error_mesh.ply, its surface with the form error in colours");
   auto parts = std::make_shared<SectionsArguments>();
   add_section_options(*command, *parts, *trace);
+  command->get_option("--sections")->excludes(meshes);
   command->callback([arguments, parts, command, &options, &chosen] {
     const bool in_sections = command->count("--sections") > 0, one = command->count("--section") > 0;
     if (one != (command->count("--stage") > 0)) throw CLI::RequiredError(one ? "--stage" : "--section");
@@ -144,7 +154,10 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
   auto* command = app.add_subcommand("compensate", "shift the path of a job against its form error");
   auto arguments = std::make_shared<CompensateArguments>();
   auto* job = command->add_option("job", arguments->job, "job.toml")->type_name("J.toml");
-  auto* output = command->add_option("-o,--output", arguments->output, "the new program")->type_name("OUT.nc");
+  auto* output = command
+                     ->add_option("-o,--output", arguments->output,
+                                  "the new program; of a job with several programs the folder for them")
+                     ->type_name("OUT.nc");
   auto* dry_run = command->add_flag("--dry-run", arguments->dry_run, "do everything, but write no program");
   command
       ->add_option("--uncertainty", arguments->uncertainty,
@@ -198,9 +211,16 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
     if (output->empty() && dry_run->empty()) throw CLI::RequiredError("-o OUT.nc or --dry-run");
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_job(arguments->job, options);
+      const std::vector<std::string> inputs =
+          files_read(arguments->job, {arguments->measured, arguments->measured_program});
+      if (has_several_programs(arguments->job)) {
+        if (!arguments->dry_run) check_output_folder(arguments->output);
+        check_outputs({arguments->report, arguments->json}, inputs);
+        return run_compensate(*arguments, options);
+      }
       check_outputs(
           {arguments->dry_run ? "" : arguments->output, record_of(*arguments), arguments->report, arguments->json},
-          files_read(arguments->job, {arguments->measured, arguments->measured_program}));
+          inputs);
       if (!started_by_mpi()) return run_compensate(*arguments, options);
       if (has_mpi()) return run_compensate_on_ranks(*arguments, options);
       print_error("this camber is built without MPI; without mpirun it runs");

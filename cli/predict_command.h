@@ -13,11 +13,12 @@ struct PredictArguments {
   std::size_t forces_at = 0;  ///< line whose forces are written over one turn; 0: none
   std::string trace;          ///< servo trace at whose positions is cut; empty: none
   std::string columns;        ///< column map of the trace; empty: none
+  bool meshes = false;        ///< machined.stl, machined.ply and form_error_mesh.ply
 };
 
-/// Writes feed.csv, forces.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and summary.json, and
-/// forces_at_LINE.csv where asked. Throws
-/// InputError. Returns kDone or kNumbersDidNotWorkOut.
+/// Writes feed.csv, forces.csv, spindle_load.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and
+/// summary.json, and forces_at_LINE.csv and meshes where asked. Throws InputError. Returns kDone or
+/// kNumbersDidNotWorkOut.
 int run_predict(const PredictArguments& arguments, const GlobalOptions& options);
 
 }  // namespace camber::cli

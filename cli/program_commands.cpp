@@ -141,7 +141,8 @@ int check(const CheckCommand& command, const GlobalOptions& options) {
 void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("check", "read and interpret a program and report problems; change nothing");
   auto arguments = std::make_shared<CheckCommand>();
-  auto* program = command->add_option("program", arguments->program, "NC program")->type_name("P.nc");
+  auto* program =
+      command->add_option("program", arguments->program, "NC program; default: the job's")->type_name("P.nc");
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   auto* machine =
       command->add_option("--machine", arguments->machine, "machine.toml: also check axes, feeds and spindle speeds");
@@ -153,6 +154,9 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   add_work_offsets(*command, arguments->interpreter);
   auto* page = command->add_option("--report", arguments->report, "report page with a picture of the path");
   page->type_name("R.html");
+  auto* sheet = command->add_option("--sheet", arguments->sheet,
+                                    "set-up sheet for A4: blank and zero, tools to scale, offsets, limits, times");
+  sheet->type_name("OUT.html")->needs("--job");
   command
       ->add_option("--explain-kinematics", arguments->explain_kinematics,
                    "instead of a program: the axes of a machine from the part to the spindle, and what a positive word "
@@ -160,14 +164,16 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       ->type_name("M.toml|J.toml")
       ->excludes(program)
       ->excludes(page)
+      ->excludes(sheet)
       ->excludes("--machine")
       ->excludes("--job");
   add_interpreter_options(*command, arguments->interpreter);
   add_language_options(*command, arguments->interpreter);
   command->callback([arguments, &options, &chosen] {
-    if (arguments->program.empty() && arguments->explain_kinematics.empty()) throw CLI::RequiredError("program");
+    if (arguments->program.empty() && arguments->job.empty() && arguments->explain_kinematics.empty())
+      throw CLI::RequiredError("program or --job");
     chosen = [arguments, &options] {
-      check_outputs({arguments->json, arguments->report},
+      check_outputs({arguments->json, arguments->report, arguments->sheet},
                     {arguments->program, arguments->machine, arguments->job, arguments->explain_kinematics});
       return check(*arguments, options);
     };
@@ -255,6 +261,9 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command
       ->add_option("--block-time-plot", arguments->block_time_plot, "speed against block length of the saturated runs")
       ->type_name("P.svg");
+  command->add_flag(
+      "--update", arguments->update,
+      "refine the machine file: its corner law stands, its numbers change where the traces determine them");
   command->add_flag("--leave-one-out", arguments->leave_one_out,
                     "also predict each servo trace by a fit on the others (one fit per trace)");
   add_tool_lengths(*command, arguments->interpreter);

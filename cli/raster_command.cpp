@@ -8,6 +8,7 @@
 #include "base/json.h"
 #include "base/mesh_file.h"
 #include "base/output_file.h"
+#include "checks/plausibility.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/program_figures.h"
@@ -228,6 +229,7 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
                  fmt::format("the spindle turns at {:g} rpm at most; --spindle-rpm {:g} was given",
                              job.machine.spindle.max_rpm, arguments.spindle_rpm),
                  "spindle-speed");
+  checks::check_job_values(job, diagnostics);
   settle(diagnostics, options);
 
   const TriangleMesh mesh = read_part(part);

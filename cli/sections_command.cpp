@@ -9,6 +9,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "machine/assumptions.h"
 #include "report/summary.h"
 
 namespace camber::cli {
@@ -36,13 +37,16 @@ int merge_and_write(const machine::Job& job, const api::PartKey& key, int round,
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   std::vector<std::string> wrong = api::doubts_of(job, program, merged.prediction);
   if (!merged.doubt.empty()) wrong.push_back(merged.doubt);
-  const std::string json =
-      api::with_sections(report::predict_json(program, merged.prediction, compute_s, nullptr, wrong), merged.figures);
+  const std::vector<std::string> assumed = machine::assumptions(job);
+  const std::string json = machine::with_assumptions(
+      api::with_sections(report::predict_json(program, merged.prediction, compute_s, nullptr, wrong), merged.figures),
+      assumed);
   Diagnostics failed;
   api::write_prediction(job, merged.prepared, merged.prediction, request, json, found, failed);
   if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
   progress.clear();
-  if (!options.quiet) fmt::print("{}", report::predict_text(program, merged.prediction, compute_s));
+  if (!options.quiet)
+    fmt::print("{}{}", machine::assumptions_text(assumed), report::predict_text(program, merged.prediction, compute_s));
   failed.throw_if_errors();
   settle(of_cut, options);
   for (const std::string& sentence : wrong) print_error(sentence);

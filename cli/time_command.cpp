@@ -8,6 +8,7 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/progress.h"
+#include "machine/assumptions.h"
 #include "report/cycle_page.h"
 
 namespace camber::cli {
@@ -30,8 +31,9 @@ int run_time(const TimeArguments& arguments, const GlobalOptions& options) {
   const api::TimeReport& out = timed.report;
   progress.clear();
   settle(diagnostics, options);
-  if (!options.quiet) fmt::print("{}", api::time_text(out));
-  if (!arguments.json.empty()) write_file(arguments.json, api::time_json(out));
+  const auto assumed = machine ? machine::assumptions(*machine) : std::vector<std::string>{};
+  if (!options.quiet) fmt::print("{}{}", machine::assumptions_text(assumed), api::time_text(out));
+  if (!arguments.json.empty()) write_file(arguments.json, machine::with_assumptions(api::time_json(out), assumed));
   if (!arguments.report.empty())
     write_file(arguments.report, report::cycle_page({.title = "Cycle time: " + out.program,
                                                      .subtitle = out.machine,

@@ -9,6 +9,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "machine/assumptions.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
 
@@ -35,12 +36,18 @@ int run_verify(const VerifyArguments& arguments, const GlobalOptions& options) {
   progress.clear();
   settle(diagnostics, options);
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::vector<std::string> assumed = machine::assumptions(job);
   Diagnostics failed;
   if (!arguments.json.empty())
-    try_to_write([&] { write_file(arguments.json, report::verify_json(result, job.compensation, compute_s)); }, failed);
+    try_to_write(
+        [&] {
+          write_file(arguments.json,
+                     machine::with_assumptions(report::verify_json(result, job.compensation, compute_s), assumed));
+        },
+        failed);
   const report::VerdictText verdict = report::verdict_text(result, job.compensation);
   if (!options.quiet) {
-    fmt::print("{}\n{}", emitted.program, report::verify_text(result, compute_s));
+    fmt::print("{}{}\n{}", machine::assumptions_text(assumed), emitted.program, report::verify_text(result, compute_s));
     if (verdict.success) fmt::print("{}\n", verdict.headline);
     fmt::print("the same, with forces and pictures: camber predict {} -o DIR\n", emitted.job_file);
   }

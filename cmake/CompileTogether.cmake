@@ -3,20 +3,21 @@
 # alone.txt in the build folder.
 if(CAMBER_UNITY)
   find_package(Python3 COMPONENTS Interpreter)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py)
 endif()
 if(CAMBER_UNITY AND Python3_FOUND)
   file(WRITE ${PROJECT_BINARY_DIR}/headers.cpp "")
   set(headers <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <limits> <map> <memory> <numbers>
     <numeric> <optional> <set> <span> <sstream> <string> <string_view> <unordered_map> <variant> <vector> <Eigen/Core>
-    <Eigen/Geometry> <fmt/format.h>)
+    <Eigen/Geometry> <fmt/format.h> <tbb/parallel_for.h>)
   add_library(camber_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
-  target_link_libraries(camber_headers PRIVATE camber_options fmt::fmt)
+  target_link_libraries(camber_headers PRIVATE camber_options TBB::tbb fmt::fmt)
   target_precompile_headers(camber_headers PRIVATE ${headers})
   if(CAMBER_TESTS)
     # Precompiled headers ask for the same optimization.
     find_package(GTest REQUIRED)
     add_library(camber_plain_test_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
-    target_link_libraries(camber_plain_test_headers PRIVATE camber_options fmt::fmt GTest::gtest)
+    target_link_libraries(camber_plain_test_headers PRIVATE camber_options TBB::tbb fmt::fmt GTest::gtest)
     target_compile_options(camber_plain_test_headers PRIVATE -fPIC -O0)
     target_precompile_headers(camber_plain_test_headers PRIVATE ${headers} <gtest/gtest.h>
       <nlohmann/json.hpp>)
@@ -45,7 +46,7 @@ function(camber_compile_together target)
     list(REMOVE_ITEM files ${PROJECT_SOURCE_DIR}/${file})
     set_source_files_properties(${PROJECT_SOURCE_DIR}/${file} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endforeach()
-  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py 1800
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py 2600
       ${PROJECT_BINARY_DIR}/unity_groups/${target}.txt ${files}
     OUTPUT_VARIABLE groups OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   string(REPLACE ";" "," groups "${groups}")

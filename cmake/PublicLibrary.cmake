@@ -1,6 +1,6 @@
 # The library for other programs: the objects of every room but cli/ in one file, with the headers of include/camber/,
 # a CMake package, a pkg-config file, and the find module for OpenVDB, which Debian's package comes without.
-set(rooms base nc machine kinematics feedmodel repath removal deflection simulate posture adapt copymill compensate plan calib report api)
+set(rooms base nc machine kinematics feedmodel repath removal deflection simulate checks posture adapt copymill compensate plan calib report api)
 list(TRANSFORM rooms REPLACE "(.+)" "$<TARGET_OBJECTS:camber_\\1>" OUTPUT_VARIABLE objects)
 add_library(camber_library ${objects})
 add_library(camber::camber ALIAS camber_library)
@@ -10,7 +10,7 @@ target_compile_features(camber_library PUBLIC cxx_std_20)
 file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/camber/*.h)
 target_sources(camber_library PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
 target_link_libraries(camber_library PRIVATE OpenVDB::openvdb TBB::tbb Ceres::ceres LibZip::zip pugixml::pugixml
-  ZLIB::ZLIB fmt::fmt ${CAMBER_OPENCASCADE_LIBRARIES})
+  SQLite::SQLite3 ZLIB::ZLIB fmt::fmt ${CAMBER_OPENCASCADE_LIBRARIES})
 if(BUILD_SHARED_LIBS)
   # Only the public names are shown, and those of OpenVDB's templates, whose static members libopenvdb shares.
   target_link_options(camber_library PRIVATE -fuse-ld=lld

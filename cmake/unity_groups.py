@@ -21,7 +21,7 @@ GROWTH = 1.3  # a group that was full before may grow by so much
 
 def local_names(text):
     found = set()
-    for line in text.splitlines():
+    for line in re.sub(r"^\[\[\w+\]\] ", "", text, flags=re.M).splitlines():
         if not line[:1].isalpha() or NOT_DEFINITIONS.match(line):
             continue
         if m := DEFINED.match(line):
@@ -37,19 +37,32 @@ def used_names(text):
     return set(re.findall(r"^using [\w:]*::(\w+);", text, re.M))
 
 
+def hidden_names(text):
+    """Those of unnamed namespaces: they would hide what another file calls by the same name."""
+    return local_names("\n".join(re.findall(r"^namespace \{\n(.*?)^\}  // namespace$", text, re.M | re.S)))
+
+
+def called_names(text):
+    return set(re.findall(r"(?<![\w.>:])([a-z_]\w*)\(", text))
+
+
 class Group:
     def __init__(self):
-        self.files, self.names, self.used, self.lines = [], set(), set(), 0
+        self.files, self.lines = [], 0
+        self.names, self.used, self.hidden, self.called = set(), set(), set(), set()
 
     def takes(self, file, limit):
         if self.lines + file.lines > limit:
             return False
-        return not (self.names & file.names or self.names & file.used or self.used & file.names)
+        return not (self.names & file.names or self.names & file.used or self.used & file.names
+                    or self.hidden & file.called or self.called & file.hidden)
 
     def add(self, file):
         self.files.append(file.path)
         self.names |= file.names
         self.used |= file.used
+        self.hidden |= file.hidden
+        self.called |= file.called
         self.lines += file.lines
 
 
@@ -58,7 +71,8 @@ class File:
         with open(path, encoding="utf8") as file:
             text = file.read()
         self.path, self.lines, self.names = path, text.count("\n"), local_names(text)
-        self.used = used_names(text)
+        self.used, self.hidden = used_names(text), hidden_names(text)
+        self.called = called_names(text) - self.names
         self.light = tuple(f"#include <{header}" not in text for header in HEAVY)
 
 

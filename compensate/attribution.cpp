@@ -144,6 +144,7 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
     const auto& p = surface[i];
     Observation& o = out.points[i];
     o.normal = p.normal;
+    if (!p.valid) continue;  // no weight in any fit
     o.error_mm = judged_mm(p, job.compensation.reference);
     o.area_mm2 = p.area_mm2;
     const auto machined = places.machined(p), owner = places.owner(p);

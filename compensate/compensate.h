@@ -37,6 +37,7 @@ struct Round {
   double overcorrected_fraction = 0;  ///< of the area: the error changed its sign and is still over the tolerance
   double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
   bool guard = false;     ///< a round of the guard against gouging
+  double free_angle_growth_rad = 0;  ///< of angles between blocks and rows, before max_angle_growth_deg held them back
   double machine_time_s = 0;
   std::size_t slowed = 0;    ///< changes of feed: stretches of the path with a feed of their own, and their ends
   std::size_t repeated = 0;  ///< runs of cuts between rapids that are cut twice
@@ -61,7 +62,7 @@ struct CompensationResult {
   std::vector<LineRole> lines;               ///< of the given program, one per line
   machine::Operations operations;            ///< the job's, as lines of the given program
   bool own_target = true;                    ///< the given program is the target
-  bool better = true;                        ///< that round is better than the given program and within the limits
+  bool better = true;  ///< that round is better than the given program, or that is good, and within the limits
   machine::Reference reference = machine::Reference::commanded;
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
@@ -72,7 +73,8 @@ struct CompensationResult {
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
-  std::vector<CauseFigure> causes;  ///< of what is left, where it is over the tolerance
+  std::vector<CauseFigure> causes;   ///< of what is left, where it is over the tolerance
+  std::vector<BindingLimit> limits;  ///< that kept the path from the shifts that its error asks for
   ErrorSplit split_before, split_after;
   std::vector<Round> rounds;             ///< rounds[0]: the given program
   std::size_t best = 0;                  ///< index into rounds

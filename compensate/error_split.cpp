@@ -79,6 +79,10 @@ struct Fits {
   std::vector<Observation> all;    ///< as observed
   std::vector<Observation> asked;  ///< less the form across the rows
   std::vector<double> at_one_place, smooth, limited;
+  /// Of smooth - at_one_place: what is the same form across the cutter for millimetres along the path. A shift that may
+  /// change from one tooth passing to the next follows it, since a helix leaves each height at another place of the
+  /// path; bow explains it, an entry or a corner does not.
+  std::vector<double> bow_in_short_range{};
 };
 
 Fits fits_of(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options) {
@@ -98,6 +102,13 @@ Fits fits_of(const ShiftPath& path, const Observed& observed, const FitShiftOpti
   return out;
 }
 
+void find_bow_in_short_range(const ShiftPath& path, Fits& f) {
+  std::vector<double> short_range(f.all.size());
+  for (std::size_t i = 0; i < short_range.size(); ++i) short_range[i] = f.smooth[i] - f.at_one_place[i];
+  constexpr double kWholeForm = 0;  // however many points a row has across
+  f.bow_in_short_range = row_form_mm(path, f.all, short_range, kWholeForm);
+}
+
 /// The largest part of one observation's error.
 PointCause cause_of(const Fits& f, std::size_t i) {
   const Observation& o = f.all[i];
@@ -108,9 +119,22 @@ PointCause cause_of(const Fits& f, std::size_t i) {
     if (std::abs(error_mm) > std::abs(out.error_mm)) out = {cause, error_mm};
   };
   offer(Cause::limited, f.limited[i] - f.smooth[i]);
-  offer(Cause::short_range, f.smooth[i] - f.at_one_place[i]);
-  offer(fixed, f.at_one_place[i] + form);
+  const double bow = f.bow_in_short_range[i];
+  offer(Cause::short_range, f.smooth[i] - f.at_one_place[i] - bow);
+  offer(fixed, f.at_one_place[i] + form + bow);
   return out;
+}
+
+/// Of the short range's mean square: the part that bow does not explain.
+double without_bow(const Fits& f, double area_mm2) {
+  std::vector<double> all, rest;
+  for (std::size_t i = 0; i < f.all.size(); ++i) {
+    all.push_back(f.smooth[i] - f.at_one_place[i]);
+    rest.push_back(all.back() - f.bow_in_short_range[i]);
+  }
+  const auto every = [](const Observation&) { return true; };
+  const double whole = mean_square(all, f.all, area_mm2, every);
+  return whole > 0 ? std::min(1.0, mean_square(rest, f.all, area_mm2, every) / whole) : 1.0;
 }
 
 }  // namespace
@@ -131,7 +155,8 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
   if (area <= 0) return out;
   out.not_compensated_um = um(others / area);
 
-  const Fits f = fits_of(path, observed, options);
+  Fits f = fits_of(path, observed, options);
+  find_bow_in_short_range(path, f);
   if (causes)
     for (std::size_t i = 0; i < f.all.size(); ++i) (*causes)[f.index[i]] = cause_of(f, i);
   const std::vector<Observation>& all = f.all;
@@ -155,7 +180,7 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
   // A smooth path is not the least squares' best: what the fit would still move counts where it would gain less.
   const double correctable = std::max(total - left_limited, mean_square(taken, all, area, every)),
                limited_by = left_limited - left_smooth,
-               short_range = std::max(0.0, total - correctable - limited_by - left);
+               short_range = std::max(0.0, total - correctable - limited_by - left) * without_bow(f, area);
   out.opposed_um = um(mean_square(f.at_one_place, all, area, [](const Observation& o) { return o.opposed; }));
   out.tip_um = um(mean_square(f.at_one_place, all, area, [](const Observation& o) { return o.at_tip && !o.opposed; }));
   out.short_range_um = um(short_range);

@@ -34,7 +34,8 @@ struct Version {
   std::vector<bool> first_cuts;     ///< one per move: of a run that is cut again; empty: none
   std::optional<ShiftPath> path;
   std::optional<Sensitivity> sensitivity;
-  std::vector<double> stiffness;  ///< of the path, one per point
+  std::vector<double> stiffness;     ///< of the path, one per point
+  double free_angle_growth_rad = 0;  ///< largest, before the path was made stiffer there
   std::vector<RowLink> links;
   std::optional<Splits> splits;
   bool split_once = false;
@@ -129,7 +130,9 @@ class Loop {
 
   // loop_finish.cpp
   Stop verdict(const CompensationResult& out) const;
-  std::vector<std::size_t> lines_of(const Trial& trial, const simulate::SimulatedProgram& program) const;
+  std::vector<ProgramLine> lines_of(const Trial& trial, std::span<const std::int32_t> stamps) const;
+  std::vector<BindingLimit> binding_limits(const CompensationResult& out);
+  Tried tried(const CompensationResult& out) const;
   std::vector<std::uint32_t> given_blocks(std::vector<std::uint32_t> block_of_line) const;
   std::size_t count_changed(const Emitted& emitted) const;
   std::vector<nc::EditNotMade> in_given(std::vector<nc::EditNotMade> not_made) const;

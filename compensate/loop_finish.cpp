@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "base/units.h"
+#include "compensate/fit_shift.h"
 #include "compensate/loop.h"
 #include "compensate/not_emitted.h"
 #include "simulate/verdict.h"
@@ -52,16 +54,59 @@ Stop Loop::verdict(const CompensationResult& out) const {
   return guarded ? Stop::depth_limit : ended_;
 }
 
-/// One per point of the emitted program's surface: the line that made it.
-std::vector<std::size_t> Loop::lines_of(const Trial& trial, const SimulatedProgram& program) const {
-  std::vector<std::size_t> out;
-  out.reserve(trial.surface.size());
-  for (const auto& p : trial.surface) {
-    const auto stamp = static_cast<std::size_t>(p.machined_stamp);
-    const bool known = p.machined_stamp >= 0 && stamp < program.path.stamps.size();
-    out.push_back(known ? program.moves.moves[program.path.stamps[stamp].move].block + 1 : 0);
+/// Of stamps of the emitted program.
+std::vector<ProgramLine> Loop::lines_of(const Trial& trial, std::span<const std::int32_t> stamps) const {
+  const SimulatedProgram& program = trial.emitted ? trial.emitted->program : setup_.program;
+  std::vector<std::uint32_t> given_of;
+  if (trial.emitted)
+    given_of = given_blocks(trial.emitted->emission.block_of_line);
+  else if (now_->repeated)
+    given_of = now_->repeated->block_of_line;
+  const auto given = [&](std::size_t block) -> std::size_t {
+    if (given_of.empty()) return block + 1;
+    return block < given_of.size() && given_of[block] != nc::Emission::kNoBlock ? given_of[block] + std::size_t{1} : 0;
+  };
+  std::vector<ProgramLine> out(stamps.size());
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const auto stamp = static_cast<std::size_t>(stamps[i]);
+    if (stamps[i] < 0 || stamp >= program.path.stamps.size()) continue;
+    const std::size_t block = program.moves.moves[program.path.stamps[stamp].move].block;
+    out[i] = {given(block), block + 1};
   }
   return out;
+}
+
+/// From which value on each limit that the best round has met would not bind.
+std::vector<BindingLimit> Loop::binding_limits(const CompensationResult& out) {
+  const machine::CompensationSettings& asked = job_.compensation;
+  const Round& best = out.rounds[out.best];
+  std::vector<BindingLimit> limits;
+  if (best.limited_points > 0) {
+    FitShiftOptions free = fit_options();
+    free.max_shift_mm = std::numeric_limits<double>::infinity();
+    ShiftPath path = *now_->path;
+    fit_shift(path, wanted_of(best_->observed, nullptr), free);
+    if (const double wanted = path.largest_shift_mm(); wanted > asked.max_shift_mm)
+      limits.push_back({kMaxShiftKey, asked.max_shift_mm, std::ceil(1000 * wanted) / 1000});
+  }
+  if (best.free_angle_growth_rad > asked.max_angle_growth_rad)
+    limits.push_back({kAngleGrowthKey, deg_from_rad(asked.max_angle_growth_rad),
+                      std::ceil(10 * deg_from_rad(best.free_angle_growth_rad)) / 10});
+  if (const Round& unguarded = out.rounds[free_round_]; best.guard && unguarded.deepest_um > depth_limit_um_)
+    limits.push_back({asked.profile_um ? kProfileKey : kOvercutKey, depth_limit_um_,
+                      std::ceil(10 * unguarded.deepest_um) / 10, out.own_depth_limit});
+  return limits;
+}
+
+Tried Loop::tried(const CompensationResult& out) const {
+  Tried found;
+  found.rounds = ended_ == Stop::stalled;
+  for (const Round& round : out.rounds) {
+    found.feeds = found.feeds || round.slowed > 0;
+    found.second_cuts = found.second_cuts || round.repeated > 0;
+  }
+  found.limits = out.limits;
+  return found;
 }
 
 void Loop::say_passes(CompensationResult& out) const {
@@ -103,17 +148,25 @@ void Loop::finish(CompensationResult& out) {
       row_turn(thin.path(), row_links(thin.path(), kRowReach_mm), job_.compensation.max_angle_growth_rad).max_rad;
   const double max_um = depth_limit_um_;
   out.depth_after = depth_of(out.surface_after, best_->observed, max_um, true);
+  out.depth_after.line = lines_of(*best_, {&out.depth_after.stamp, 1}).front();
   out.depth_others = depth_of(out.surface_after, best_->observed, max_um, false);
   out.depth_without_bending = depth_without_bending(job_, setup_.target, program, max_um);
   out.within_part = out.depth_after.gouge_depth_p999_um <= max_um;
   out.plain_after = figures_of(*best_);
   out.within_tolerance = within_tolerance(out.plain_after, job_.compensation);
   out.stop = verdict(out);
+  out.limits = binding_limits(out);
   if (!out.within_tolerance) {
     std::vector<PointCause> points;
     split_error(path, best_->observed, fit_options(), &points);
-    out.causes = causes_of(best.split, points, best_->observed, lines_of(*best_, program));
-    for (CauseFigure& cause : out.causes) cause.cut_twice = best.repeated > 0;
+    std::vector<std::int32_t> stamps;
+    for (const removal::SurfacePoint& p : best_->surface) stamps.push_back(p.machined_stamp);
+    out.causes = causes_of(best.split, points, best_->observed, lines_of(*best_, stamps));
+    for (CauseFigure& cause : out.causes) {
+      if (setup_.target.contour_parts && cause.cause == Cause::short_range)
+        cause.contour = contour_cause_of(cause.cause, points, best_->surface);
+      cause.remedies = remedies_of(cause, tried(out));
+    }
   }
   if (options_.max_stock_crossings > 0)
     out.stock = removal::stock_shape(setup_.target.surface, options_.max_stock_crossings);
@@ -127,7 +180,7 @@ void Loop::finish(CompensationResult& out) {
   out.blocks_changed = best_->emitted ? count_changed(*best_->emitted) : 0;
   out.settled = first.unsettled == 0 && best.unsettled == 0;
   const double imbalance = simulate::imbalance(best_->chip_mm3, best_->stock_mm3, job_.simulation.voxel_mm);
-  if (out.doubts.empty() && std::abs(imbalance) > simulate::kMaxImbalance)
+  if (out.doubts.empty() && best_->all_valid && std::abs(imbalance) > simulate::kMaxImbalance)
     out.doubts.push_back("in the emitted program " + simulate::imbalance_sentence(best_->chip_mm3, best_->stock_mm3));
 }
 
@@ -176,7 +229,8 @@ void Loop::check(CompensationResult& out) {
   out.block_of_line = given_blocks(std::move(with_header.block_of_line));
   const std::size_t more = SourceText("", out.text).line_count() - out.blocks_after;
   for (CauseFigure& cause : out.causes)
-    for (std::size_t& line : cause.lines) line += more;
+    for (ProgramLine& line : cause.lines) line.emitted += more;
+  if (out.depth_after.line.emitted > 0) out.depth_after.line.emitted += more;
 }
 
 }  // namespace camber::compensate

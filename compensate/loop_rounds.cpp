@@ -131,7 +131,9 @@ bool Loop::ask_for_lifts(Guard& guard, double deepest_um) {
 }
 
 void Loop::choose(CompensationResult& out) {
-  out.better = allowed_index_ > 0 || out.rounds.size() == 1;
+  const bool given_is_good =
+      within_tolerance(out.plain_before, job_.compensation) && out.rounds[0].deepest_um <= depth_limit_um_;
+  out.better = allowed_index_ > 0 || out.rounds.size() == 1 || given_is_good;
   if (!out.better && options_.keep_anyway) return;
   out.best = allowed_index_;
   best_ = allowed_;
@@ -185,6 +187,11 @@ void Loop::fit_and_emit(const std::vector<Observation>& observations, double fra
     next.emitted = trials_.emit(path, now_->splits->kept(), now_->compensated);
     thin.take_shifts(path);
     const RowTurn turn = row_turn(thin.path(), links, job_.compensation.max_angle_growth_rad);
+    if (i == 0) {
+      double& free_growth = now_->free_angle_growth_rad;
+      free_growth = std::max({free_growth, next.emitted->quality.angle_growth_rad, turn.max_rad});
+      round.free_angle_growth_rad = free_growth;
+    }
     if (next.emitted->quality.over.empty() && turn.over.empty()) break;
     stiffen(next.emitted->quality.over);
     for (const std::size_t link : turn.over) link_stiffness[link] *= kStiffer;

@@ -1,12 +1,15 @@
 // The program as given: its error, what of it is compensated, and the points of the path.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "checks/plausibility.h"
 #include "compensate/expected.h"
 #include "compensate/loop.h"
 #include "nc/emit.h"
+#include "removal/engagement.h"
 #include "simulate/operations.h"
 #include "simulate/verdict.h"
 
@@ -18,6 +21,12 @@ namespace {
 
 constexpr double kSpacing_mm = 0.4;  // between points of a long line
 constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
+
+/// No default lets the tool go deeper than the model bends it, or than the stock is thick.
+double deepest_limit_um(const removal::Stock& blank) {
+  const Vec3 size = blank.max_mm() - blank.min_mm();
+  return 1000 * std::min(removal::DeflectedEngager::kMaxDeflection_mm, size.minCoeff());
+}
 
 /// Where the blank has an allowance, the first of two cuts must find some of it.
 void check_allowance(const machine::Job& job, Diagnostics& diagnostics) {
@@ -39,8 +48,7 @@ void check_given(const machine::Job& job, const SimulatedProgram& program, Diagn
   if (early.operations.size() == 1 || job.compensation.operations.given())
     check_compensated(program, early.moves, diagnostics);
   if (job.compensation.has(machine::Lever::passes)) check_allowance(job, diagnostics);
-  simulate::check_travel(job, program, diagnostics);
-  simulate::check_program(job, program, diagnostics);
+  checks::check_program(job, program, diagnostics);
 }
 
 }  // namespace
@@ -49,9 +57,11 @@ Loop::Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOp
     : job_(job),
       diagnostics_(diagnostics),
       options_(options),
-      setup_(simulate::set_up(
-          job, {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); }},
-          {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
+      setup_(
+          simulate::set_up(job,
+                           {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); },
+                            .clearance = true},
+                           {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
       trials_(job_, setup_) {
   simulate::check_clearance(job_, setup_, diagnostics_);
   diagnostics_.throw_if_errors();
@@ -88,7 +98,9 @@ void Loop::start(CompensationResult& out) {
   out.own_depth_limit = job_.compensation.depth_limit_um().has_value();
   depth_limit_um_ = job_.compensation.depth_limit_um().value_or(0);
   if (!out.own_depth_limit)
-    depth_limit_um_ = default_depth_limit_um(*now_->path, given->observed, fit_options(), 1000 * tolerance_mm());
+    depth_limit_um_ =
+        std::min(deepest_limit_um(setup_.target.blank),
+                 default_depth_limit_um(*now_->path, given->observed, fit_options(), 1000 * tolerance_mm()));
   out.depth_limit_um = depth_limit_um_;
   out.plain_before = figures_of(*given);
   out.feed_before = setup_.program.feed;

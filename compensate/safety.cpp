@@ -16,6 +16,7 @@ void add_point(Depth& out, const removal::SurfacePoint& p, double error_mm, doub
   if (deep_um > out.deepest_um) {
     out.deepest_um = deep_um;
     out.place_mm = p.place_mm;
+    out.stamp = p.machined_stamp;
   }
   if (deep_um > tolerance_um) over += p.area_mm2;
 }
@@ -29,7 +30,7 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
   std::vector<std::pair<double, double>> depths;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     area += surface[i].area_mm2;
-    if (observed.compensated[i] != compensated) continue;
+    if (observed.compensated[i] != compensated || !surface[i].valid) continue;
     const double error_mm = observed.points[i].error_mm;
     add_point(out, surface[i], error_mm, tolerance_um, over);
     depths.emplace_back(-1000 * error_mm, surface[i].area_mm2);
@@ -46,6 +47,7 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Refer
   std::vector<std::pair<double, double>> depths;
   for (const removal::SurfacePoint& p : surface) {
     area += p.area_mm2;
+    if (!p.valid) continue;
     add_point(out, p, judged_mm(p, reference), tolerance_um, over);
     depths.emplace_back(-1000 * judged_mm(p, reference), p.area_mm2);
   }

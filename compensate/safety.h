@@ -1,11 +1,13 @@
 #pragma once
 // Safety checks of the emitted program: gouge depth and axis travel.
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
 #include "compensate/attribution.h"
+#include "compensate/program_line.h"
 #include "machine/job.h"
 #include "simulate/predict.h"
 #include "simulate/travel.h"
@@ -18,6 +20,8 @@ struct Depth {
   double gouge_depth_p999_um = 0;  ///< 99.9 % of the surface is not deeper; compared with the depth limit
   Vec3 place_mm = Vec3::Zero();
   double over_fraction = 0;  ///< fraction of the area deeper than the tolerance
+  std::int32_t stamp = -1;   ///< that made the deepest point; -1: none
+  ProgramLine line{};        ///< its line, where it is asked for
 };
 
 /// Of the points that compensated moves made (`compensated` false: of the others), by the judged error.

@@ -12,6 +12,7 @@ void Trial::keep(simulate::Prediction prediction) {
   total_mm = std::move(prediction.total_error_mm);
   static_rounds = prediction.cut.rounds_max;
   unsettled = prediction.cut.unsettled;
+  all_valid = prediction.validity.all();
   chip_mm3 = prediction.cut.chip_mm3;
   stock_mm3 = prediction.cut.stock_mm3;
 }

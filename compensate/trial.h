@@ -34,6 +34,7 @@ struct Trial {
   std::vector<double> total_mm;  ///< against the part's mesh, one per point; empty without a mesh
   int static_rounds = 0;
   std::size_t unsettled = 0;
+  bool all_valid = true;               ///< the model holds everywhere (simulate/validity.h)
   double chip_mm3 = 0, stock_mm3 = 0;  ///< volume of the chips and volume lost by the stock
   Observed observed;
 

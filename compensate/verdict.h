@@ -6,6 +6,7 @@
 
 #include "compensate/attribution.h"
 #include "compensate/error_split.h"
+#include "compensate/program_line.h"
 #include "machine/job.h"
 #include "removal/form_error.h"
 
@@ -33,20 +34,54 @@ bool within_tolerance(const PlainFigures& figures, const machine::CompensationSe
 bool within_tolerance(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
                       const machine::CompensationSettings& asked);
 
+/// What the contour error of a piece of surface comes from (simulate/contour.h).
+enum class ContourCause { none, lag, path_tolerance, corner_law };
+/// The part of the contour error that makes half or more of the error of the points with `cause`. `surface`: the same
+/// points.
+ContourCause contour_cause_of(Cause cause, const std::vector<PointCause>& points,
+                              const std::vector<removal::SurfacePoint>& surface);
+
 /// A part of the remaining error, and the lines of the program with most of it.
 struct CauseFigure {
   Cause cause = Cause::correctable;
   double rms_um = 0;
-  std::vector<std::size_t> lines;  ///< 1-based, the worst ones, ascending
-  bool cut_twice = false;          ///< the program has second cuts already
+  std::vector<ProgramLine> lines{};           ///< the worst ones, ascending
+  ContourCause contour = ContourCause::none;  ///< of what changes faster than a smooth shift can
+  std::vector<std::string> remedies{};        ///< that were not tried
 };
 
-/// Those that make a tenth of the mean square or more, the largest first. `lines`: of the judged program, one per point
-/// of the surface; 0: unknown.
+/// Those that make a tenth of the mean square or more, the largest first, without remedies. `lines`: one per point of
+/// the surface.
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
-                                   const Observed& observed, const std::vector<std::size_t>& lines);
+                                   const Observed& observed, const std::vector<ProgramLine>& lines);
 
-/// "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; a second cut ... would remove it".
+inline constexpr const char *kMaxShiftKey = "max_shift_mm", *kAngleGrowthKey = "max_angle_growth_deg",
+                            *kOvercutKey = "max_overcut_um", *kProfileKey = "profile_um";
+
+/// A limit of the job that kept the path from the shifts that its error asks for.
+struct BindingLimit {
+  std::string key;   ///< "max_shift_mm"
+  double value = 0;  ///< of the job, in the key's unit
+  double binds_no_more_at = 0;
+  bool own = true;  ///< false: the job does not give it
+};
+/// "max_shift_mm = 0.1 binds; from 0.134 on it would not".
+std::string sentence(const BindingLimit& limit);
+
+/// What a compensation has used.
+struct Tried {
+  bool rounds = false;  ///< they ended before max_rounds: one more was not worth it
+  bool feeds = false, second_cuts = false;
+  std::vector<BindingLimit> limits{};
+};
+/// What may take a cause away and has not been tried.
+std::vector<std::string> remedies_of(const CauseFigure& cause, const Tried& tried);
+
+/// "line 12", "lines 12, 14 (15 as emitted)".
+std::string lines_text(const std::vector<ProgramLine>& lines);
+
+/// "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14 (15 as emitted); a shorter tool would remove
+/// it".
 std::string sentence(const CauseFigure& cause);
 
 }  // namespace camber::compensate

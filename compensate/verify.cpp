@@ -7,9 +7,11 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "checks/plausibility.h"
 #include "compensate/header.h"
 #include "compensate/safety.h"
 #include "compensate/trial.h"
+#include "machine/machine_presets.h"
 #include "simulate/verdict.h"
 
 namespace camber::compensate {
@@ -87,7 +89,8 @@ machine::Job judging_job(const machine::Job& job, const CompensationResult& c, c
   const fs::path folder = fs::absolute(output).parent_path();
   for (std::string* path :
        {&out.program, &out.machine_path, &out.stock.mesh, &out.stock.vdb, &out.part.mesh, &out.part.program})
-    if (!path->empty()) *path = fs::absolute(*path).lexically_normal().lexically_proximate(folder).string();
+    if (!path->empty() && !machine::is_preset(*path))
+      *path = fs::absolute(*path).lexically_normal().lexically_proximate(folder).string();
   return out;
 }
 
@@ -182,11 +185,10 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
                     const simulate::Progress& progress) {
   Diagnostics of_given;  // it was warned of when it was compensated
   const auto check = [&](const simulate::SimulatedProgram& emitted) {
-    simulate::check_travel(job, emitted, diagnostics);
-    simulate::check_program(job, emitted, diagnostics);
+    checks::check_program(job, emitted, diagnostics);
   };
-  const simulate::Setup setup =
-      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_given, .target = diagnostics});
+  const simulate::Setup setup = simulate::set_up(job, {.check = check, .clearance = true},
+                                                 {.program = diagnostics, .original = of_given, .target = diagnostics});
   simulate::check_clearance(job, setup, diagnostics);
   diagnostics.throw_if_errors();
   const simulate::Prediction p =
@@ -199,6 +201,11 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
   out.within_tolerance = within_tolerance(out.plain, job.compensation);
   out.depth_limit_um = record.depth_limit_um;
   out.depth = depth_of(p.surface, out.reference, p.not_judged_mm2, out.depth_limit_um);
+  if (out.depth.stamp >= 0) {
+    const auto& stamp = setup.program.path.stamps[static_cast<std::size_t>(out.depth.stamp)];
+    const std::size_t line = setup.program.moves.moves[stamp.move].block + std::size_t{1};
+    out.depth.line = {line, line};
+  }
   out.within_part = out.depth.gouge_depth_p999_um <= out.depth_limit_um;
   out.settled = p.cut.unsettled == 0;
   out.unseen_mm2 = p.unseen_mm2;

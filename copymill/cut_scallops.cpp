@@ -1,5 +1,6 @@
 // Finishing rows on the part's surface.
 #include <algorithm>
+#include <optional>
 
 #include "base/stage.h"
 #include "copymill/operation.h"
@@ -10,15 +11,23 @@ namespace {
 
 constexpr double kFinishMaterial_mm = 0.005;
 
-/// The parts of a chain inside the region and its heights.
+/// The parts of a chain inside the region and its heights, which are those of the surface: on a slope the tip of a
+/// round cutter is lower than the place that it touches.
 std::vector<Pass> clipped(const std::vector<Vec3>& chain, const Workplace& place) {
+  constexpr double kBorder_mm = 1e-3;
   const auto& z = place.cut.operation.region.z_mm;
   const bool polygon = !place.cut.operation.region.polygon_mm.empty();
   std::vector<Pass> out;
+  std::optional<std::uint32_t> near;
+  const auto within_heights = [&](const Vec3& p) {
+    const auto contact = place.field.drop().at(p.head<2>(), near);
+    if (!contact) return true;
+    near = contact->triangle;
+    return contact->point.z() >= (*z)[0] - kBorder_mm && contact->point.z() <= (*z)[1] + kBorder_mm;
+  };
   bool going = false;
   for (const Vec3& p : chain) {
-    const bool in = (!z || (p.z() >= (*z)[0] - 1e-9 && p.z() <= (*z)[1] + 1e-9)) &&
-                    (!polygon || place.region.contains(p.head<2>()));
+    const bool in = (!polygon || place.region.contains(p.head<2>())) && (!z || within_heights(p));
     if (in && !going) out.emplace_back();
     if (in) out.back().points.push_back(p);
     going = in;

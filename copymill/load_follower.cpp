@@ -118,6 +118,7 @@ double LoadFollower::pass(const removal::Stamp& stamp, double commanded) {
   const double actual = passing_mm_ / passing_s_;
   figures_.max_N = std::max(figures_.max_N, force);
   if (!rule_) return force;
+  if (force > LoadFigures::kOver * figures_.target_N) note_over(stamp, force);
   if (load.expected.lateral_max_N > kTellsHardness * band_.limit)
     felt_.feel(load.chips_at_mm, load.felt.torque_mean_Nmm / load.expected.torque_mean_Nmm);
   // Slower than commanded at corners and where the tool sets off: the load there says little of the feed.
@@ -157,6 +158,21 @@ double LoadFollower::flush() {
 
 std::int32_t LoadFollower::next_id() const {
   return probe_ ? probe_->next_id() : first_id_ + static_cast<std::int32_t>(waiting_.size());
+}
+
+/// Passings of a few turns, or nearer to each other than a tenth of the radius, are one place.
+void LoadFollower::note_over(const removal::Stamp& stamp, double force) {
+  constexpr double kTurns = 3, kNear = 0.1;
+  auto& places = figures_.places;
+  const bool same = !places.empty() && (stamp.t_s - last_over_s_ < kTurns * band_.teeth * passing_s_ ||
+                                        (stamp.pose.tip_mm - places.back().place_mm).norm() < kNear * shape_.radius_mm);
+  if (!same) places.push_back({stamp.t_s, stamp.pose.tip_mm, force, 0});
+  last_over_s_ = stamp.t_s;
+  OverTarget& place = places.back();
+  ++place.passings;
+  if (force <= place.force_N) return;
+  place.force_N = force;
+  place.place_mm = stamp.pose.tip_mm;
 }
 
 void LoadFollower::count(double force, double actual, double commanded) {

@@ -14,14 +14,24 @@
 
 namespace camber::copymill {
 
+/// A place where tooth passings take more than LoadFigures::kOver of the target.
+struct OverTarget {
+  double t_s = 0;
+  Vec3 place_mm = Vec3::Zero();  ///< of the tip, at the greatest force
+  double force_N = 0;            ///< greatest
+  std::size_t passings = 0;
+};
+
 /// How well an operation's load kept to its target.
 struct LoadFigures {
-  double target_N = 0;  ///< 0: none, feed and depths stay as they are
+  static constexpr double kOver = 1.1;  ///< of the target: places with more are named
+  double target_N = 0;                  ///< 0: none, feed and depths stay as they are
   double max_N = 0;
   std::size_t passings = 0;  ///< that cut
   std::size_t counted = 0;   ///< of these, at a feed that the rule chose: not its lowest or highest, not a corner's
   std::size_t within = 0;    ///< of the counted, 80 to 105 % of the target
   std::size_t over = 0;      ///< of all that cut, more than 120 %
+  std::vector<OverTarget> places{};  ///< in order of time
 };
 
 /// One operation: the probe that cuts the stock, and the rule where the operation has a target.
@@ -66,6 +76,7 @@ class LoadFollower {
   void choose_feed();
   double allowed_mm_per_s() const;
   void wait(const removal::Stamp& stamp);
+  void note_over(const removal::Stamp& stamp, double force);
   void count(double force_N, double actual_mm_per_s, double commanded_mm_per_s);
 
   const machine::CopyOperation& operation_;
@@ -86,6 +97,7 @@ class LoadFollower {
   std::vector<Bound> bounds_;  ///< where the tool has not been yet
   double gone_mm_ = 0, passing_mm_ = 0, braking_mm_per_s2_ = 1;
   LoadFigures figures_;
+  double last_over_s_ = 0;
 };
 
 }  // namespace camber::copymill

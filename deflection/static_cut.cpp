@@ -115,7 +115,10 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
   swing_.clear();
   const StaticEquilibrium::Motion motion{removal::motion_in_tool(stamps_, from_ + k), stamps_[from_ + k].first};
   double share = 1, before_um = std::numeric_limits<double>::infinity();
-  while (!out.settled && out.rounds < options_.max_rounds) {
+  // Where passing after passing has no equilibrium, the next one hardly finds one in its last rounds.
+  constexpr int kPatience = 20, kFewRounds = 8;
+  const int most = unsettled_in_a_row_ < kPatience ? options_.max_rounds : std::min(options_.max_rounds, kFewRounds);
+  while (!out.settled && out.rounds < most) {
     const auto read = engager_.read(k);
     read_.assign(read.begin(), read.end());
     const auto step = equilibrium_.solve(read_, from_ + k, motion, share, run_out_.of(from_ + k), row);
@@ -144,6 +147,7 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
     }
     before_um = step.rms_um;
   }
+  unsettled_in_a_row_ = out.settled ? 0 : unsettled_in_a_row_ + 1;
   if (k + 1 == count_) carve_to(count_);
   reading.settled = out.settled;
   reading.glance = engager_.glance_of(read_);

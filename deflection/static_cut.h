@@ -94,7 +94,8 @@ class StaticCut {
   std::vector<removal::DeflectedChipSample> read_;
   std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this reading and of the previous one, alternating
   std::size_t readings_ = 0;
-  std::vector<float> swing_;  ///< the deflection a few readings ago
+  int unsettled_in_a_row_ = 0;  ///< readings
+  std::vector<float> swing_;    ///< the deflection a few readings ago
 };
 
 }  // namespace camber::deflection

@@ -13,7 +13,7 @@ constexpr double kSettlingFoldings = 12.0;
 template <class Axis>
 double settling_s(const Axis& axis) {
   const double lag = std::isinf(axis.position_gain_per_s) ? 0.0 : 1.0 / axis.position_gain_per_s + axis.velocity_lag_s;
-  return kSettlingFoldings * (lag + axis.exponential_1_s + axis.exponential_2_s);
+  return axis.dead_time_s + kSettlingFoldings * (lag + axis.exponential_1_s + axis.exponential_2_s);
 }
 
 /// Of x, y, z, a, b, c, as filter_times_s.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "machine/control_kinds.h"
+#include "machine/machine_presets.h"
 #include "nc/dialects.h"
 #include "nc/emit/number_style.h"
 
@@ -42,8 +43,11 @@ nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std:
 }
 
 nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given) {
-  given.dialect = dialect_of(machine.control.kind);
-  given.dwell_p_is_ms = given.dialect->dwell_p_is_ms;
+  // Presets belong to no control: their programs are read in the dialect that the text shows.
+  if (!machine::is_preset(machine.path)) {
+    given.dialect = dialect_of(machine.control.kind);
+    given.dwell_p_is_ms = given.dialect->dwell_p_is_ms;
+  }
   if (!given.whole_numbers_are_increments)
     given.whole_numbers_are_increments = machine.control.whole_numbers_are_increments;
   // Of a control that nobody named nothing is said: numbers count units.

@@ -38,12 +38,16 @@ double PositionLoop::operator()(double command_mm) {
     position_mm_ = command_mm;
     velocity_mm_per_s_ = speed;
   } else {
+    const double step = options_.acceleration_feed_forward_s * (speed - command_speed_mm_per_s_);
+    (options_.velocity_lag_s > 0 ? velocity_mm_per_s_ : position_mm_) +=
+        options_.velocity_lag_s > 0 ? step / options_.velocity_lag_s : step;
     const double behind = speed * (1.0 - options_.feed_forward_percent / 100.0) / options_.gain_per_s;
     const double z = position_mm_ - (command_mm_ - behind), dz = velocity_mm_per_s_ - speed;
     position_mm_ = command_mm - behind + a_ * z + b_ * dz;
     velocity_mm_per_s_ = speed + c_ * z + d_ * dz;
   }
   command_mm_ = command_mm;
+  command_speed_mm_per_s_ = speed;
   return position_mm_;
 }
 

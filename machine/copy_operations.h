@@ -41,7 +41,8 @@ struct CopyRegion {
   std::optional<std::array<Vec2, 2>> box_mm{};  ///< lower and upper corner
   std::vector<Vec2> polygon_mm{};               ///< empty: not given
   std::vector<Box> boxes_mm{};                  ///< several, each with the levels of the tip there; empty: not given
-  std::optional<std::array<double, 2>> z_mm{};  ///< lowest and highest level of the tip; of all boxes
+  std::optional<std::array<double, 2>> z_mm{};  ///< lowest and highest level of the tip, with scallop_mm of
+                                                ///< the surface; of all boxes
 };
 
 struct CopyOperation {

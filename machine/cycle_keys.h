@@ -7,6 +7,7 @@
 
 namespace camber::machine {
 
+inline constexpr NumberRange kDeadTimeMs{.min = 0, .max = 1000};  // of an axis
 inline constexpr std::array<std::string_view, 2> kRapidPathWords{"dogleg", "linear"};
 inline constexpr std::array<std::string_view, 3> kAccelerationLawWords{"linear", "exponential", "bell"};
 inline constexpr std::array<std::string_view, 2> kCodeOrderWords{"sequential", "simultaneous"};

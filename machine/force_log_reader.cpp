@@ -169,7 +169,7 @@ ForceLog read_force_log(const std::string& job_path, Diagnostics& diagnostics) {
   for (const auto key : {"program", "machine", "units", "operations", "stock", "part", "simulation", "compensation"})
     top.ignore(key);
   std::map<int, Tool> tools;
-  if (auto table = top.table("tool")) read_tools(*table, tools);
+  read_tools(top, std::filesystem::path(job_path).parent_path(), false, tools, diagnostics);
   if (tools.empty() && !top.has("tool")) top.missing("[tool.1]", "the tool that was logged");
   if (auto material = top.table("material"))
     log.material = read_material_table(*material, std::filesystem::path(job_path).parent_path().string(), diagnostics);

@@ -1,5 +1,4 @@
 // Tool libraries of HSMWorks, Inventor CAM and older Fusion: .hsmlib, XML.
-#include <cmath>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -7,6 +6,7 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
+#include "machine/job_keys.h"
 #include "machine/library_words.h"
 #include "machine/tool_proposal.h"
 
@@ -18,26 +18,33 @@ class HsmTool {
   HsmTool(const pugi::xml_node& node, const std::string& path, std::size_t index)
       : node_(node), path_(path), index_(index), unit_mm_(unit_mm()) {}
 
-  /// Nothing for a tool without a number in the machine.
-  std::optional<ToolProposal> read() const {
-    const auto number = value("nc", "number", 1);
-    if (!number) return std::nullopt;
-    if (*number < 0 || *number > 1e6 || *number != std::floor(*number))
-      fail(fmt::format("nc number=\"{}\"; a whole number was expected", text("nc", "number")));
+  ToolProposal read() const {
     ToolProposal tool;
-    tool.number = static_cast<int>(*number);
+    if (const auto number = value("nc", "number", 1)) {
+      if (!kToolNumber.holds(*number))
+        fail(fmt::format("nc number=\"{}\"; a whole number was expected", text("nc", "number")));
+      tool.number = static_cast<int>(*number);
+    }
     tool.from = fmt::format("{}, tool {}", path_, index_);
     const std::string type = node_.attribute("type").value();
     tool.what = node_.child("description").text().get();
     if (tool.what.empty()) tool.what = type;
-    tool.type = type_of_library(type);
-    tool.diameter_mm = size("diameter", unit_mm_);
-    if (tool.type == ToolType::bull) tool.corner_radius_mm = size("corner-radius", unit_mm_);
-    tool.flute_length_mm = size("flute-length", unit_mm_);
-    tool.overhang_mm = size("body-length", unit_mm_);
-    tool.shank_diameter_mm = size("shaft-diameter", unit_mm_);
-    if (const auto flutes = size("number-of-flutes", 1)) tool.flutes = static_cast<int>(std::lround(*flutes));
+    const bool drill = kind_of_fusion(type) == "drill";
+    set_fusion_cutter(tool, type,
+                      {.diameter = size("diameter", unit_mm_),
+                       .corner_radius = size("corner-radius", unit_mm_),
+                       .flute_length = size("flute-length", unit_mm_),
+                       .body_length = size("body-length", unit_mm_),
+                       .overall_length = size("overall-length", unit_mm_),
+                       .shank_diameter = size("shaft-diameter", unit_mm_),
+                       .shoulder_diameter = size("shoulder-diameter", unit_mm_),
+                       .shoulder_length = size("shoulder-length", unit_mm_),
+                       .tip_diameter = size("tip-diameter", unit_mm_),
+                       .flutes = size("number-of-flutes", 1),
+                       .taper_deg = drill ? 0 : size("taper-angle", 1),
+                       .point_deg = drill ? size("taper-angle", 1) : 0});
     tool.youngs_modulus_GPa = modulus_of_library_GPa(text("material", "name"));
+    read_holder(tool);
     return tool;
   }
 
@@ -65,10 +72,24 @@ class HsmTool {
     return *number * unit;
   }
 
-  /// Of the body; nothing where it is zero, as the library writes what does not apply.
-  std::optional<double> size(const char* attribute, double unit) const {
-    const auto number = value("body", attribute, unit);
-    return number && *number > 0 ? number : std::nullopt;
+  /// Of the body; zero where it is not given.
+  double size(const char* attribute, double unit) const { return value("body", attribute, unit).value_or(0); }
+
+  double number_of(const pugi::xml_node& node, const char* attribute) const {
+    const std::string_view word = node.attribute(attribute).value();
+    const auto number = parse_number(word);
+    if (!number) fail(fmt::format("{} {}=\"{}\"; a number was expected", node.name(), attribute, word));
+    return *number * unit_mm_;
+  }
+
+  /// Sections are points: length 0 begins a segment at its diameter, the next one ends it.
+  void read_holder(ToolProposal& tool) const {
+    double diameter = 0;
+    for (const pugi::xml_node& section : node_.child("holder").children("section")) {
+      const double length = number_of(section, "length"), next = number_of(section, "diameter");
+      if (length > 0) tool.holder.push_back({diameter, next, length});
+      diameter = next;
+    }
   }
 
   const pugi::xml_node& node_;
@@ -93,7 +114,7 @@ std::vector<ToolProposal> read_hsm_library(const std::string& path) {
   std::vector<ToolProposal> out;
   std::size_t index = 0;
   for (const pugi::xml_node& node : document.document_element().children("tool"))
-    if (auto tool = HsmTool(node, path, ++index).read()) out.push_back(std::move(*tool));
+    out.push_back(HsmTool(node, path, ++index).read());
   return out;
 }
 

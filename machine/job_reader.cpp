@@ -1,15 +1,15 @@
 // job.toml into a Job.
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <regex>
 
 #include <fmt/format.h>
 
 #include "machine/job_keys.h"
+#include "machine/job_programs.h"
 #include "machine/job_tables.h"
+#include "machine/machine_presets.h"
 #include "machine/material_reader.h"
-#include "machine/tool_reader.h"
 #include "machine/unprogrammed_job.h"
 
 namespace camber::machine {
@@ -73,6 +73,7 @@ void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock
   stock.mesh = file_at(table, "mesh", folder);
   stock.vdb = file_at(table, "vdb", folder);
   stock.allowance_mm = table.number("allowance_mm", kNotNegative, 0);
+  table.ignore("assumed");  // assumptions.h
   std::string_view first;
   for (const std::string_view key : {"box_mm", "cylinder", "mesh", "vdb"}) {
     if (!table.has(key)) continue;
@@ -252,7 +253,7 @@ void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool
 }
 
 void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& diagnostics) {
-  if (auto tools = top.table("tool")) read_tools(*tools, job.tools);
+  read_tools(top, folder, job.inch.value_or(false), job.tools, diagnostics);
   if (job.tools.empty() && !top.has("tool")) top.missing("[tool.1]", "a table for each tool of the program");
   if (const auto operations = top.table("operations")) job.operations = read_operations(*operations, job.tools);
   if (auto material = top.table("material"))
@@ -274,50 +275,97 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
 
 }  // namespace
 
-void read_tools(TomlTable table, std::map<int, Tool>& tools) {
-  for (const auto& key : table.keys()) {
-    int number = 0;
-    const auto [end, ec] = std::from_chars(key.data(), key.data() + key.size(), number);
-    const bool is_number = ec == std::errc{} && end == key.data() + key.size() && number >= 0;
-    const auto tool = table.table(key);
-    if (!is_number)
-      table.error_at_name(key, fmt::format("[tool.{}]: a tool number was expected, as in [tool.1] for T1", key),
-                          "tool-number");
-    else if (tool)
-      tools.emplace(number, read_tool(*tool, number));
-  }
+std::string machine_path_at(TomlTable& top, const fs::path& folder) {
+  if (top.kind_of("machine") != TomlNode::Kind::text) return required_file_at(top, "machine", folder);
+  const std::string given = top.text("machine", "");
+  if (!is_preset(given)) return required_file_at(top, "machine", folder);
+  if (find_machine_preset(given) == nullptr) top.error_at("machine", unknown_machine_preset(given), "machine-preset");
+  return given;
 }
 
 namespace {
 
-Job read(const std::string& path, Diagnostics& diagnostics, bool programmed) {
-  Job job;
+/// program = ["rough.nc", "finish.nc"]; one or more.
+std::vector<std::string> read_programs(TomlTable& top, const fs::path& folder) {
+  constexpr std::string_view kWanted = "a list of NC programs, as in [\"rough.nc\", \"finish.nc\"],";
+  std::vector<std::string> out;
+  for (const std::string& given : top.text_list("program", kWanted).value_or(std::vector<std::string>{})) {
+    out.push_back((folder / given).lexically_normal().string());
+    std::error_code ec;
+    if (!fs::is_regular_file(out.back(), ec))
+      top.error_at("program",
+                   fmt::format("program: no such file: {} (paths are relative to the job's folder)", out.back()),
+                   "file-missing");
+  }
+  if (out.empty())
+    top.error_at("program", "program is an empty list; at least one NC program was expected", "program-list");
+  return out;
+}
+
+/// What belongs to one program alone.
+void check_several(TomlTable& top, const JobOfPrograms& read) {
+  if (read.programs.size() < 2) return;
+  const auto refuse = [&](const char* what) {
+    top.error_at("program",
+                 fmt::format("the job has {} programs, and {} belong to one; a job for each program was expected",
+                             read.programs.size(), what),
+                 "several-programs");
+  };
+  const Job& job = read.job;
+  if (!job.operations.blocks.empty() || !job.compensation.operations.blocks.empty()) refuse("the lines of operations");
+  if (!job.part.program.empty() || job.part.operations || job.part.judged) refuse("part.program and its operations");
+}
+
+enum class ProgramKey { none, one, several };
+
+JobOfPrograms read(const std::string& path, Diagnostics& diagnostics, ProgramKey programs) {
+  JobOfPrograms out;
+  Job& job = out.job;
   job.path = path;
   const auto file =
       read_toml(path, "a job description (program, machine, [tool.1], [material], [stock] ...)", diagnostics);
   diagnostics.throw_if_errors();
   const fs::path folder = fs::path(path).parent_path();
   TomlTable top = TomlTable::top(*file, diagnostics);
-  if (programmed)
+  if (programs != ProgramKey::none && top.is_list("program")) {
+    out.programs = read_programs(top, folder);
+    if (!out.programs.empty()) job.program = out.programs.front();
+    if (programs == ProgramKey::one && out.programs.size() > 1)
+      top.error_at("program",
+                   fmt::format("the job has {} programs, which predict, compensate and check run one after the other; "
+                               "one program was expected here",
+                               out.programs.size()),
+                   "several-programs");
+  } else if (programs != ProgramKey::none) {
     job.program = required_file_at(top, "program", folder);
-  else if (const std::string made = top.text("program", ""); !made.empty())
+    out.programs = {job.program};
+  } else if (const std::string made = top.text("program", ""); !made.empty()) {
     job.program = (folder / made).lexically_normal().string();
-  job.machine_path = required_file_at(top, "machine", folder);
+  }
+  job.machine_path = machine_path_at(top, folder);
   if (top.has("units")) job.inch = top.choice("units", kUnitWords, 0) == 1;
   read_tables(top, folder, job, diagnostics);
+  check_several(top, out);
   top.ignore("force_log");  // fit-force's own
   top.ignore("copy");       // machine/copy_operations.h
   top.finish();
   std::error_code ec;
-  if (fs::is_regular_file(job.machine_path, ec)) job.machine = read_machine(job.machine_path, diagnostics);
+  if (find_machine_preset(job.machine_path) || fs::is_regular_file(job.machine_path, ec))
+    job.machine = read_machine(job.machine_path, diagnostics);
   diagnostics.throw_if_errors();
-  return job;
+  return out;
 }
 
 }  // namespace
 
-Job read_job(const std::string& path, Diagnostics& diagnostics) { return read(path, diagnostics, true); }
+Job read_job(const std::string& path, Diagnostics& diagnostics) { return read(path, diagnostics, ProgramKey::one).job; }
 
-Job read_unprogrammed_job(const std::string& path, Diagnostics& diagnostics) { return read(path, diagnostics, false); }
+Job read_unprogrammed_job(const std::string& path, Diagnostics& diagnostics) {
+  return read(path, diagnostics, ProgramKey::none).job;
+}
+
+JobOfPrograms read_job_of_programs(const std::string& path, Diagnostics& diagnostics) {
+  return read(path, diagnostics, ProgramKey::several);
+}
 
 }  // namespace camber::machine

@@ -2,13 +2,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "machine/assumptions.h"
 #include "machine/job_keys.h"
 #include "machine/material_reader.h"
 
 namespace camber::machine {
 namespace {
 
-std::string tool_text(const Tool& tool) {
+using AssumedKeys = std::map<std::string, std::vector<std::string>>;
+
+std::string assumed_line(const AssumedKeys& assumed, const std::string& table) {
+  const auto at = assumed.find(table);
+  return at == assumed.end() ? std::string() : fmt::format("assumed = [\"{}\"]\n", fmt::join(at->second, "\", \""));
+}
+
+std::string tool_text(const Tool& tool, const AssumedKeys& assumed) {
   std::string out = fmt::format("\n[tool.{}]\n", tool.number);
   out += toml_line("type", kToolTypeWords[static_cast<std::size_t>(tool.type)]);
   out += toml_line("flutes", tool.flutes, kAsIs) + toml_lines<Tool>(kToolKeys, tool);
@@ -35,14 +43,14 @@ std::string tool_text(const Tool& tool) {
   if (tool.axial_stiffness_N_per_mm)
     out += toml_line("axial_stiffness_N_per_um", *tool.axial_stiffness_N_per_mm, kNewtonsPerMicrometre);
   if (tool.shear) out += "shear = true\n";
-  return out;
+  return out + assumed_line(assumed, fmt::format("tool.{}", tool.number));
 }
 
 std::string point_text(const Vec3& p) {
   return fmt::format("[{}, {}, {}]", toml_number(p.x(), kAsIs), toml_number(p.y(), kAsIs), toml_number(p.z(), kAsIs));
 }
 
-std::string stock_text(const StockDescription& stock) {
+std::string stock_text(const StockDescription& stock, const AssumedKeys& assumed) {
   std::string out = "\n[stock]\n";
   if (stock.box)
     out += fmt::format("box_mm = [{}, {}]\n", point_text(stock.box->min_mm), point_text(stock.box->max_mm));
@@ -52,7 +60,7 @@ std::string stock_text(const StockDescription& stock) {
                        toml_number(stock.cylinder->height_mm, kAsIs));
   if (!stock.mesh.empty()) out += toml_line("mesh", stock.mesh);
   if (!stock.vdb.empty()) out += toml_line("vdb", stock.vdb);
-  return out + toml_line("allowance_mm", stock.allowance_mm, kAsIs);
+  return out + toml_line("allowance_mm", stock.allowance_mm, kAsIs) + assumed_line(assumed, "stock");
 }
 
 std::string operations_text(const std::string& name, const Operations& operations) {
@@ -100,12 +108,13 @@ std::string adapt_text(const AdaptSettings& a) {
 }  // namespace
 
 std::string to_toml(const Job& job) {
+  const AssumedKeys assumed = assumed_keys(job.path);
   std::string out = toml_line("program", job.program) + toml_line("machine", job.machine_path);
   if (job.inch) out += toml_line("units", kUnitWords[*job.inch ? 1 : 0]);
   if (job.operations.given()) out += operations_text("operations", job.operations);
-  for (const auto& [number, tool] : job.tools) out += tool_text(tool);
-  out += "\n[material]\n" + material_text(job.material);
-  out += stock_text(job.stock) + part_text(job.part);
+  for (const auto& [number, tool] : job.tools) out += tool_text(tool, assumed);
+  out += "\n[material]\n" + material_text(job.material) + assumed_line(assumed, "material");
+  out += stock_text(job.stock, assumed) + part_text(job.part);
   out += "\n[simulation]\n" + toml_lines<Simulation>(kSimulationKeys, job.simulation);
   out += toml_line("coupling", kCouplingWords[job.simulation.coupling == Coupling::rigid ? 0 : 1]);
   if (job.simulation.collisions)

@@ -32,6 +32,8 @@ struct RotaryAxis {
   double position_gain_per_s = std::numeric_limits<double>::infinity();  ///< Kp of the position loop
   double velocity_lag_s = 0;                                             ///< of the velocity loop
   double feed_forward_percent = 0;                                       ///< of the position loop
+  double acceleration_feed_forward_s = 0, dead_time_s = 0;               ///< as of machine::Axis
+  double backlash_rad = 0;                                               ///< lost motion at each reversal
   /// Corner law speed_difference: value for this axis; infinite: the number of the corner law, in degrees.
   double speed_difference_rad_per_s = std::numeric_limits<double>::infinity();
   double clamp_s = 0;              ///< time to unclamp and clamp the axis, for each rotation

@@ -63,7 +63,7 @@ struct Control {
   /// Minimum wait at the stop between rapid and feed moves; 0: no stop.
   double rapid_change_s = 0;
   std::optional<double> least_increment_mm{};  ///< of coordinates in an emitted program; not given: as the program has
-  bool kind_given = false;  ///< [control] dialect; else the default kind
+  bool kind_given = false;                     ///< [control] dialect; else the default kind
   /// Numbers without a decimal point count least increments, not millimetres or inches; not given: not known.
   std::optional<bool> whole_numbers_are_increments{};
   /// In-position width: between rapid and feed moves, and at exact stops (G9, G61.1), the control waits until every
@@ -89,6 +89,9 @@ struct Axis {
   double position_gain_per_s = kNoLimit;            ///< Kp of the position loop; infinity: no lag
   double velocity_lag_s = 0;                        ///< time constant of the velocity loop inside the position loop
   double feed_forward_percent = 0;
+  double acceleration_feed_forward_s = 0;  ///< commanded acceleration x this is added to the velocity command
+  double dead_time_s = 0;                  ///< from the command to the position loop
+  double backlash_mm = 0;                  ///< of the load behind the position loop: lost motion at each reversal
   /// Corner law speed_difference: value for this axis; infinite: that of the corner law.
   double speed_difference_mm_per_s = kNoLimit;
   double stiffness_N_per_mm = kNoLimit;  ///< static, tool against work, along this axis

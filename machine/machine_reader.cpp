@@ -6,7 +6,9 @@
 #include "machine/body_reader.h"
 #include "machine/kinematics_reader.h"
 #include "machine/machine_keys.h"
+#include "machine/machine_presets.h"
 #include "machine/source_parameters.h"
+#include "machine/toml_table.h"
 
 namespace camber::machine {
 namespace {
@@ -159,12 +161,24 @@ void read_reference_points(TomlTable table, Machine& machine) {
 
 }  // namespace
 
+namespace {
+
+SourceText text_of(const std::string& path) {
+  if (!is_preset(path)) return SourceText::read(path);
+  const MachinePreset* preset = find_machine_preset(path);
+  if (preset == nullptr) fail_on_file(path, unknown_machine_preset(path), "machine-preset");
+  return {path, machine_preset_text(*preset)};
+}
+
+}  // namespace
+
 Machine read_machine(const std::string& path, Diagnostics& diagnostics) {
   Machine machine;
   machine.path = path;
-  const auto file = read_toml(path, "a machine description ([control], [axis.x] ...)", diagnostics);
+  const auto file = parse_toml(text_of(path), "a machine description ([control], [axis.x] ...)", diagnostics);
   diagnostics.throw_if_errors();
   TomlTable top = TomlTable::top(*file, diagnostics);
+  top.ignore("assumed");  // assumptions.h
   for (Axis& axis : machine.axis) axis.given = false;
   if (auto source = top.table("source")) read_source(*source, machine);
   bool width_given = false;

@@ -7,6 +7,7 @@
 #include "machine/kinematics_keys.h"
 #include "machine/kinematics_reader.h"
 #include "machine/machine_keys.h"
+#include "machine/machine_presets.h"
 
 namespace camber::machine {
 namespace {
@@ -65,8 +66,9 @@ std::string fitted_range_text(const FittedRange& r) {
 }  // namespace
 
 std::string to_toml(const Machine& machine) {
-  std::string out = "[control]\n";
-  out += toml_line("dialect", machine.control.kind.name);
+  std::string out = is_preset(machine.path) ? toml_line("assumed", machine.path) : "";
+  out += "[control]\n";
+  if (!is_preset(machine.path)) out += toml_line("dialect", machine.control.kind.name);
   out += toml_lines<Control>(kControlKeys, machine.control);
   out += toml_line("lookahead_blocks", machine.control.lookahead_blocks, kAsIs);
   if (machine.control.least_increment_mm)

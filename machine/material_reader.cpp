@@ -17,16 +17,9 @@ namespace {
 const MaterialPreset* read_preset(TomlTable& table) {
   if (!table.has("preset")) return nullptr;
   const std::string name = table.text("preset", "");
-  const MaterialPreset* preset = find_preset(name);
-  if (preset != nullptr || name.empty()) return preset;
-  std::vector<std::string> names;
-  for (const auto& p : material_presets()) names.emplace_back(p.name);
-  const std::string near = nearest_word(name, names);
-  table.error_at("preset",
-                 fmt::format("there is no material preset \"{}\"{}; one of {} was expected", name,
-                             near.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", near), fmt::join(names, ", ")),
-                 "material-preset");
-  return nullptr;
+  const MaterialPreset* preset = find_material(name).preset;
+  if (preset == nullptr) table.error_at("preset", unknown_material(name), "material-preset");
+  return preset;
 }
 
 /// The law other than the default one that the keys show, or the default.
@@ -81,6 +74,7 @@ Material read_material(TomlTable table) {
   }
   for (const auto& c : kEdgeTerms)
     if (const auto value = table.optional_number(c.key, c.range)) material.*c.field = *value;
+  table.ignore("assumed");  // assumptions.h
   table.finish();
   return material;
 }

@@ -56,6 +56,16 @@ std::string set_number(Machine& machine, std::string_view key, double value) {
                                   : fmt::format("; did you mean {}?", near));
 }
 
+std::optional<double> number_of(const Machine& machine, std::string_view key) {
+  std::optional<double> found;
+  Machine copy = machine;
+  for_each_table(copy, [&](const std::string& table, const auto& keys, auto& from) {
+    for (const auto& k : keys)
+      if (!found && key == fmt::format("{}.{}", table, k.key)) found = k.unit.file_from_inside(from.*k.field);
+  });
+  return found;
+}
+
 std::vector<std::string> number_keys() {
   std::vector<std::string> out;
   Machine machine;

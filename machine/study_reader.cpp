@@ -16,8 +16,8 @@ constexpr std::size_t kMaxCases = 100000;
 constexpr NumberRange kFeedPercent{.min = 1, .max = 1000};
 
 /// Keys of a job that are paths of files.
-constexpr std::string_view kFileKeys[] = {"program",   "machine",   "material.file", "stock.mesh",
-                                          "stock.vdb", "part.mesh", "part.program"};
+constexpr std::string_view kFileKeys[] = {"program",    "machine",   "tools",     "material.file",
+                                          "stock.mesh", "stock.vdb", "part.mesh", "part.program"};
 
 bool is_file_key(std::string_view key) { return std::ranges::find(kFileKeys, key) != std::end(kFileKeys); }
 

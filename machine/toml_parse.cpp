@@ -21,6 +21,7 @@ void convert_entries(const SourceText& source, const toml::table& from, TomlNode
 
 TomlNode convert(const SourceText& source, const toml::node& from) {
   TomlNode node;
+  node.source = &source;
   node.offset = offset_of(source, from.source().begin);
   if (const auto* table = from.as_table()) {
     node.kind = TomlNode::Kind::table;
@@ -52,23 +53,30 @@ std::string reason(std::string_view description) {
 
 }  // namespace
 
-std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics) {
+std::unique_ptr<TomlFile> parse_toml(SourceText source, Diagnostics& diagnostics) {
   auto file = std::make_unique<TomlFile>();
-  file->source = SourceText::read(path);
+  file->source = std::move(source);
   file->root.kind = TomlNode::Kind::table;
-  if (is_blank(file->source.text())) {
-    diagnostics.add(
-        {Severity::error, {path, 0, 0}, "the file is empty; " + contents + " was expected", "file-empty", {}});
-    return file;
-  }
+  file->root.source = &file->source;
   try {
-    const toml::table root = toml::parse(file->source.text(), path);
+    const toml::table root = toml::parse(file->source.text(), file->source.name());
     convert_entries(file->source, root, file->root);
   } catch (const toml::parse_error& problem) {
     diagnostics.add(file->source.diagnostic(Severity::error, offset_of(file->source, problem.source().begin),
                                             "not valid TOML: " + reason(problem.description()), "toml-syntax"));
   }
   return file;
+}
+
+std::unique_ptr<TomlFile> parse_toml(SourceText source, const std::string& contents, Diagnostics& diagnostics) {
+  if (is_blank(source.text()))
+    diagnostics.add(
+        {Severity::error, {source.name(), 0, 0}, "the file is empty; " + contents + " was expected", "file-empty", {}});
+  return parse_toml(std::move(source), diagnostics);
+}
+
+std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics) {
+  return parse_toml(SourceText::read(path), contents, diagnostics);
 }
 
 }  // namespace camber::machine

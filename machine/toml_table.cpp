@@ -76,6 +76,12 @@ std::string NumberRange::wanted() const {
   return fmt::format("{} from {} to {}", noun, shown(min), shown(max));
 }
 
+std::vector<std::string> nearest_words(std::string_view word, std::vector<std::string> known, std::size_t count) {
+  std::ranges::stable_sort(known, {}, [&](const std::string& candidate) { return edit_distance(word, candidate); });
+  known.resize(std::min(known.size(), count));
+  return known;
+}
+
 std::string nearest_word(std::string_view word, std::span<const std::string> known) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
@@ -94,16 +100,23 @@ std::string nearest_word(std::string_view word, std::span<const std::string> kno
   return best;
 }
 
-TomlTable::TomlTable(const TomlFile& file, const TomlNode& node, std::string name, Diagnostics& diagnostics)
-    : file_(&file), node_(&node), name_(std::move(name)), diagnostics_(&diagnostics) {}
+TomlTable::TomlTable(const TomlNode& node, std::string name, Diagnostics& diagnostics)
+    : node_(&node), name_(std::move(name)), diagnostics_(&diagnostics) {}
 
-TomlTable TomlTable::top(const TomlFile& file, Diagnostics& diagnostics) { return {file, file.root, "", diagnostics}; }
+TomlTable TomlTable::top(const TomlFile& file, Diagnostics& diagnostics) { return {file.root, "", diagnostics}; }
+
+void TomlTable::fall_back_on(const TomlNode& node, std::string name) {
+  fallback_ = &node;
+  fallback_name_ = std::move(name);
+}
 
 std::string TomlTable::where() const { return name_.empty() ? "" : " in [" + name_ + "]"; }
 
 const TomlNode::Entry* TomlTable::find(std::string_view key) const {
-  for (const auto& entry : node_->entries)
-    if (entry.key == key) return &entry;
+  for (const TomlNode* node : {node_, fallback_})
+    if (node)
+      for (const auto& entry : node->entries)
+        if (entry.key == key) return &entry;
   return nullptr;
 }
 
@@ -118,40 +131,49 @@ const TomlNode* TomlTable::use(std::string_view key) {
   return entry ? &entry->value : nullptr;
 }
 
-void TomlTable::report(Severity severity, std::size_t offset, std::string message, std::string check) {
-  diagnostics_->add(file_->source.diagnostic(severity, offset, std::move(message), std::move(check)));
+void TomlTable::report(Severity severity, const TomlNode& file, std::size_t offset, std::string message,
+                       std::string check) {
+  diagnostics_->add(file.source->diagnostic(severity, offset, std::move(message), std::move(check)));
+}
+
+void TomlTable::report(Severity severity, const TomlNode& at, std::string message, std::string check) {
+  report(severity, at, at.offset, std::move(message), std::move(check));
 }
 
 Diagnostic TomlTable::place_of(std::string_view key) const {
   const auto* entry = find(key);
-  return file_->source.diagnostic(Severity::error, entry ? entry->value.offset : node_->offset, {}, {});
+  const TomlNode& at = entry ? entry->value : *node_;
+  return at.source->diagnostic(Severity::error, at.offset, {}, {});
 }
 
 void TomlTable::error_at(std::string_view key, std::string message, std::string check) {
   const auto* entry = find(key);
-  report(Severity::error, entry ? entry->value.offset : node_->offset, std::move(message), std::move(check));
+  report(Severity::error, entry ? entry->value : *node_, std::move(message), std::move(check));
 }
 
 void TomlTable::warning_at(std::string_view key, std::string message, std::string check) {
   const auto* entry = find(key);
-  report(Severity::warning, entry ? entry->value.offset : node_->offset, std::move(message), std::move(check));
+  report(Severity::warning, entry ? entry->value : *node_, std::move(message), std::move(check));
 }
 
 void TomlTable::error_at_name(std::string_view key, std::string message, std::string check) {
   const auto* entry = find(key);
-  report(Severity::error, entry ? entry->key_offset : node_->offset, std::move(message), std::move(check));
+  if (entry)
+    report(Severity::error, entry->value, entry->key_offset, std::move(message), std::move(check));
+  else
+    report(Severity::error, *node_, std::move(message), std::move(check));
 }
 
 void TomlTable::missing(std::string_view key, std::string_view wanted) {
   const std::string message = fmt::format("{} is missing{}; {} was expected", key, where(), wanted);
   if (name_.empty())  // the top of the file has no place of its own
-    diagnostics_->add({Severity::error, {file_->source.name(), 0, 0}, message, "key-missing", {}});
+    diagnostics_->add({Severity::error, {node_->source->name(), 0, 0}, message, "key-missing", {}});
   else
-    report(Severity::error, node_->offset, message, "key-missing");
+    report(Severity::error, *node_, message, "key-missing");
 }
 
 void TomlTable::wrong_type(std::string_view key, const TomlNode& value, std::string_view wanted) {
-  report(Severity::error, value.offset, fmt::format("{} is {}; {} was expected", key, kind_name(value.kind), wanted),
+  report(Severity::error, value, fmt::format("{} is {}; {} was expected", key, kind_name(value.kind), wanted),
          "value-type");
 }
 
@@ -162,7 +184,7 @@ bool TomlTable::number_ok(const std::string& key, const TomlNode& value, const N
     return false;
   }
   if (range.holds(value.number)) return true;
-  report(Severity::error, value.offset, fmt::format("{} is {}; {} was expected", key, shown(value.number), wanted),
+  report(Severity::error, value, fmt::format("{} is {}; {} was expected", key, shown(value.number), wanted),
          "value-range");
   return false;
 }
@@ -187,7 +209,7 @@ std::string TomlTable::text(std::string_view key, std::string fallback) {
   if (!value) return fallback;
   if (value->kind == TomlNode::Kind::text && !value->text.empty()) return value->text;
   if (value->kind == TomlNode::Kind::text)
-    report(Severity::error, value->offset, fmt::format("{} is empty; a text was expected", key), "value-range");
+    report(Severity::error, *value, fmt::format("{} is empty; a text was expected", key), "value-range");
   else
     wrong_type(key, *value, "a text in quotes");
   return fallback;
@@ -215,7 +237,7 @@ std::size_t TomlTable::choice(std::string_view key, std::span<const std::string_
   }
   const auto at = std::find(words.begin(), words.end(), value->text);
   if (at != words.end()) return static_cast<std::size_t>(at - words.begin());
-  report(Severity::error, value->offset, fmt::format("{} is \"{}\"; {} was expected", key, value->text, listed(words)),
+  report(Severity::error, *value, fmt::format("{} is \"{}\"; {} was expected", key, value->text, listed(words)),
          "value-choice");
   return fallback;
 }
@@ -255,7 +277,7 @@ std::optional<std::vector<std::string>> TomlTable::text_list(std::string_view ke
   if (!value) return std::nullopt;
   const auto is_text = [](const TomlNode& item) { return item.kind == TomlNode::Kind::text; };
   if (value->kind != TomlNode::Kind::array || !std::ranges::all_of(value->items, is_text)) {
-    report(Severity::error, value->offset, fmt::format("{}: {} was expected", key, wanted), "value-type");
+    report(Severity::error, *value, fmt::format("{}: {} was expected", key, wanted), "value-type");
     return std::nullopt;
   }
   std::vector<std::string> out;
@@ -281,7 +303,7 @@ std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::stri
   };
   if (value->kind != TomlNode::Kind::array || (rows > 0 && value->items.size() != rows) ||
       !std::all_of(value->items.begin(), value->items.end(), is_row)) {
-    report(Severity::error, value->offset, fmt::format("{}: {} was expected", key, wanted), "value-count");
+    report(Severity::error, *value, fmt::format("{}: {} was expected", key, wanted), "value-count");
     return std::nullopt;
   }
   std::vector<std::vector<double>> out;
@@ -304,7 +326,7 @@ std::optional<TomlTable> TomlTable::table(std::string_view key) {
     wrong_type(key, *value, fmt::format("a table [{}]", name));
     return std::nullopt;
   }
-  return TomlTable(*file_, *value, name, *diagnostics_);
+  return TomlTable(*value, name, *diagnostics_);
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) {
@@ -317,7 +339,7 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
     wrong_type(key, *value, fmt::format("a list of tables [{}]", name));
     return out;
   }
-  for (const TomlNode& item : value->items) out.emplace_back(TomlTable(*file_, item, name, *diagnostics_));
+  for (const TomlNode& item : value->items) out.emplace_back(TomlTable(item, name, *diagnostics_));
   return out;
 }
 
@@ -327,15 +349,20 @@ std::vector<std::string> TomlTable::keys() const {
   return out;
 }
 
-void TomlTable::finish() {
+void TomlTable::refuse_unknown(const TomlNode& node, const std::string& where) {
   const std::vector<std::string> known(known_.begin(), known_.end());
-  for (const auto& entry : node_->entries) {
+  for (const auto& entry : node.entries) {
     if (known_.contains(entry.key)) continue;
     const std::string near = nearest_word(entry.key, known);
     const std::string hint = near.empty() ? "" : fmt::format("; did you mean {}?", near);
-    report(Severity::error, entry.key_offset, fmt::format("unknown key {}{}{}", entry.key, where(), hint),
+    report(Severity::error, entry.value, entry.key_offset, fmt::format("unknown key {}{}{}", entry.key, where, hint),
            "key-unknown");
   }
+}
+
+void TomlTable::finish() {
+  refuse_unknown(*node_, where());
+  if (fallback_) refuse_unknown(*fallback_, fmt::format(" in [{}]", fallback_name_));
 }
 
 }  // namespace camber::machine

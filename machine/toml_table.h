@@ -18,11 +18,12 @@
 
 namespace camber::machine {
 
-/// One value of the file, with its place.
+/// One value of a file, with its place. The file must outlive it.
 struct TomlNode {
   enum class Kind { table, array, text, number, boolean, other };
   struct Entry;
   Kind kind = Kind::other;
+  const SourceText* source = nullptr;
   std::size_t offset = 0;       ///< of the value, bytes from the file's start
   std::string text;             ///< kind text
   double number = 0;            ///< kind number
@@ -47,11 +48,19 @@ struct TomlFile {
 /// Throws InputError where the file cannot be read.
 std::unique_ptr<TomlFile> read_toml(const std::string& path, const std::string& contents, Diagnostics& diagnostics);
 
+/// The same of a text in memory; diagnostics name it by the text's name. Without `contents` it may be empty.
+std::unique_ptr<TomlFile> parse_toml(SourceText source, const std::string& contents, Diagnostics& diagnostics);
+std::unique_ptr<TomlFile> parse_toml(SourceText source, Diagnostics& diagnostics);
+
 class TomlTable {
  public:
   /// `name` as in the file's brackets: "tool.1"; empty for the top of the file.
-  TomlTable(const TomlFile& file, const TomlNode& node, std::string name, Diagnostics& diagnostics);
+  TomlTable(const TomlNode& node, std::string name, Diagnostics& diagnostics);
   static TomlTable top(const TomlFile& file, Diagnostics& diagnostics);
+
+  /// Keys that the table itself does not have are taken from `node`, a table of another file, say, "tool.17" of it.
+  void fall_back_on(const TomlNode& node, std::string name);
+  bool has_fallback() const { return fallback_ != nullptr; }
 
   bool has(std::string_view key) const { return find(key) != nullptr; }
   bool is_list(std::string_view key) const;
@@ -83,6 +92,8 @@ class TomlTable {
   std::optional<TomlNode::Kind> kind_of(std::string_view key) const;
   /// Marks `key` as known without reading it.
   void ignore(std::string_view key) { known_.emplace(key); }
+  /// What stands in this table itself.
+  const std::vector<TomlNode::Entry>& entries() const { return node_->entries; }
   /// Keys of this table; reading them marks them as known.
   std::vector<std::string> keys() const;
 
@@ -100,18 +111,24 @@ class TomlTable {
  private:
   const TomlNode::Entry* find(std::string_view key) const;
   const TomlNode* use(std::string_view key);
-  void report(Severity severity, std::size_t offset, std::string message, std::string check);
+  void report(Severity severity, const TomlNode& at, std::string message, std::string check);
+  void report(Severity severity, const TomlNode& file, std::size_t offset, std::string message, std::string check);
+  void refuse_unknown(const TomlNode& node, const std::string& where);
   void wrong_type(std::string_view key, const TomlNode& value, std::string_view wanted);
   bool number_ok(const std::string& key, const TomlNode& value, const NumberRange& range, std::string_view wanted);
   /// " in [tool.1]", or nothing at the top of the file.
   std::string where() const;
 
-  const TomlFile* file_;
   const TomlNode* node_;
   std::string name_;
+  const TomlNode* fallback_ = nullptr;
+  std::string fallback_name_;
   Diagnostics* diagnostics_;
   std::set<std::string, std::less<>> known_;
 };
+
+/// At most `count` words of `known`, those that are most like `word` first.
+std::vector<std::string> nearest_words(std::string_view word, std::vector<std::string> known, std::size_t count);
 
 /// The word of `known` that is most like `word`; empty where none is near.
 std::string nearest_word(std::string_view word, std::span<const std::string> known);

@@ -1,20 +1,22 @@
-// Tool tables of LinuxCNC and tool libraries of Fusion.
+// Tool tables of LinuxCNC; files and folders of tool libraries.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
 #include "base/units.h"
+#include "machine/job_keys.h"
 #include "machine/library_words.h"
-#include "machine/tool_proposal.h"
-#include "machine/zip_entry.h"
 
 namespace camber::machine {
 namespace {
 
-using nlohmann::json;
+namespace fs = std::filesystem;
 
 [[noreturn]] void fail_at(const SourceText& source, std::size_t offset, std::string message, std::string check) {
   throw InputError({source.diagnostic(Severity::error, offset, std::move(message), std::move(check))});
@@ -26,6 +28,7 @@ std::optional<ToolProposal> table_line(const SourceText& source, std::size_t lin
   const std::string_view words = all.substr(0, all.find(';'));
   const auto offset = static_cast<std::size_t>(all.data() - source.text().data());
   std::optional<double> number, diameter;
+  bool turning = false;  // front and back angle, orientation of the tip
   for (std::size_t at = 0; at < words.size();) {
     if (std::isspace(static_cast<unsigned char>(words[at]))) {
       ++at;
@@ -41,10 +44,11 @@ std::optional<ToolProposal> table_line(const SourceText& source, std::size_t lin
               "tool-table");
     if (letter == 'T') number = value;
     if (letter == 'D') diameter = value;
+    turning = turning || (std::string_view("IJQ").find(letter) != std::string_view::npos && *value != 0);
     at = end;
   }
   if (!number) return std::nullopt;
-  if (*number < 0 || *number > 1e6 || *number != std::floor(*number))
+  if (!kToolNumber.holds(*number))
     fail_at(source, offset, fmt::format("T{} in a tool table; a whole number was expected", *number), "tool-table");
   const bool remark = all.find(';') != std::string_view::npos;
   ToolProposal tool = tool_of_words(remark ? all.substr(all.find(';') + 1) : std::string_view(), inch);
@@ -54,46 +58,11 @@ std::optional<ToolProposal> table_line(const SourceText& source, std::size_t lin
     tool.diameter_mm = *diameter * (inch ? kMmPerInch : 1);
     tool.doubt.clear();
   }
-  return tool;
-}
-
-std::optional<double> number_at(const json& object, const char* key, double unit) {
-  const auto at = object.find(key);
-  if (at == object.end() || !at->is_number()) return std::nullopt;
-  const double value = at->get<double>() * unit;
-  return value > 0 ? std::optional(value) : std::nullopt;
-}
-
-std::string text_at(const json& object, const char* key) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
-}
-
-std::optional<ToolProposal> library_tool(const json& entry, const std::string& path, std::size_t index) {
-  if (!entry.is_object()) return std::nullopt;
-  const json none = json::object();
-  const auto part = [&](const char* key) -> const json& {
-    const auto at = entry.find(key);
-    return at != entry.end() && at->is_object() ? *at : none;
-  };
-  const json& geometry = part("geometry");
-  const json& post = part("post-process");
-  const auto number = post.find("number");
-  if (number == post.end() || !number->is_number_integer()) return std::nullopt;
-  const double unit = text_at(entry, "unit") == "inches" ? kMmPerInch : 1;
-  ToolProposal tool;
-  tool.number = number->get<int>();
-  tool.from = fmt::format("{}, tool {}", path, index + 1);
-  tool.what = text_at(entry, "description");
-  if (tool.what.empty()) tool.what = text_at(entry, "type");
-  tool.type = type_of_library(text_at(entry, "type"));
-  tool.diameter_mm = number_at(geometry, "DC", unit);
-  if (tool.type == ToolType::bull) tool.corner_radius_mm = number_at(geometry, "RE", unit);
-  tool.flute_length_mm = number_at(geometry, "LCF", unit);
-  tool.overhang_mm = number_at(geometry, "LB", unit);
-  tool.shank_diameter_mm = number_at(geometry, "SFDM", unit);
-  if (const auto flutes = number_at(geometry, "NOF", 1)) tool.flutes = static_cast<int>(std::lround(*flutes));
-  tool.youngs_modulus_GPa = modulus_of_library_GPa(text_at(entry, "BMC"));
+  if (turning) {
+    tool.kind = "turning";
+    tool.type.reset();
+    set_type_by_kind(tool);
+  }
   return tool;
 }
 
@@ -107,30 +76,122 @@ std::vector<ToolProposal> read_tool_table(const std::string& path, bool inch) {
   return out;
 }
 
-std::vector<ToolProposal> read_tool_library(const std::string& path) {
-  const bool packed = std::filesystem::path(path).extension() == ".tools";
-  const SourceText source = packed ? read_zip_entry(path, "tools.json", "tool-library") : SourceText::read(path);
-  json library;
-  try {
-    library = json::parse(source.text());
-  } catch (const json::parse_error& e) {
-    fail_at(source, e.byte > 0 ? std::min<std::size_t>(e.byte - 1, source.text().size()) : 0,
-            "this is not JSON; a tool library of Fusion (File, Export, JSON) was expected", "tool-library");
-  }
-  const auto data = library.is_object() ? library.find("data") : library.end();
-  if (!library.is_object() || data == library.end() || !data->is_array())
-    fail_on_file(path, "has no list \"data\"; a tool library of Fusion (File, Export, JSON) was expected",
-                 "tool-library");
-  std::vector<ToolProposal> out;
-  for (std::size_t i = 0; i < data->size(); ++i)
-    if (auto tool = library_tool((*data)[i], path, i)) out.push_back(std::move(*tool));
+namespace {
+
+std::string ending_of(const fs::path& path) {
+  std::string out = path.extension().string();
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return out;
 }
 
-std::vector<ToolProposal> read_tools(const std::string& path, bool inch) {
-  const std::string ending = std::filesystem::path(path).extension().string();
+void append(std::vector<ToolProposal>& out, std::vector<ToolProposal> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(out));
+}
+
+/// Whether a .json or .csv file, in a folder that has all sorts of them, begins as a tool library does.
+bool is_library(const fs::path& path) {
+  const std::string ending = ending_of(path);
+  if (ending == ".json") {
+    const std::string text = SourceText::read(path.string()).text();
+    return text.find("\"data\"") != std::string::npos && text.find("\"geometry\"") != std::string::npos;
+  }
+  if (ending == ".csv") return SourceText::read(path.string()).line(1).find("(tool_index)") != std::string_view::npos;
+  constexpr std::array<std::string_view, 6> kEndings{".tools", ".hsmlib", ".fctl", ".fctb", ".vtdb", ".tbl"};
+  return std::ranges::find(kEndings, ending) != kEndings.end();
+}
+
+std::vector<ToolProposal> read_folder(const std::string& path, bool inch, Diagnostics& diagnostics) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(path, fs::directory_options::skip_permission_denied))
+    if (entry.is_regular_file() && is_library(entry.path())) files.push_back(entry.path());
+  if (files.empty())
+    fail_on_file(path,
+                 "no tool library in this folder; .json, .tools, .csv, .hsmlib, .fctl, .vtdb or .tbl was expected",
+                 "tool-library");
+  // Bits after the libraries that list them.
+  std::ranges::sort(files, {}, [](const fs::path& f) { return std::pair(ending_of(f) == ".fctb", f); });
+  std::vector<ToolProposal> out;
+  std::set<std::string> listed;
+  for (const fs::path& file : files) {
+    if (listed.contains(file.lexically_normal().string())) continue;
+    append(out, read_tools(file.string(), inch, diagnostics));
+    for (const auto& tool : out) listed.insert(tool.from);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<ToolProposal> read_tools(const std::string& path, bool inch, Diagnostics& diagnostics) {
+  std::error_code ec;
+  if (fs::is_directory(path, ec)) return read_folder(path, inch, diagnostics);
+  const std::string ending = ending_of(path);
   if (ending == ".hsmlib") return read_hsm_library(path);
-  return ending == ".json" || ending == ".tools" ? read_tool_library(path) : read_tool_table(path, inch);
+  if (ending == ".json" || ending == ".tools") return read_fusion_library(path);
+  if (ending == ".csv") return read_fusion_csv(path);
+  if (ending == ".fctl") return read_freecad_library(path, diagnostics);
+  if (ending == ".fctb") return {read_freecad_bit(path)};
+  if (ending == ".vtdb") return read_vectric_library(path);
+  if (ending == ".toml")
+    fail_on_file(path, "is TOML, which a job names itself (tools = \"shop.toml\"); a tool library was expected",
+                 "tool-library");
+  return read_tool_table(path, inch);
+}
+
+std::string body_toml(const ToolProposal& tool) {
+  const auto line = [](const char* key, double value) {
+    return fmt::format("{} = {}\n", key, toml_number(value, kAsIs));
+  };
+  std::string out, rows;
+  const double overhang_mm = tool.overhang_mm.value_or(kNoLimit);
+  if (tool.flute_length_mm) {
+    const double length_mm = std::min(*tool.flute_length_mm, overhang_mm);
+    out += line("flute_length_mm", length_mm);
+    const double neck_mm = std::min(tool.shoulder_length_mm.value_or(0), overhang_mm) - length_mm;
+    if (tool.neck_diameter_mm && neck_mm > 0)
+      out += line("neck_diameter_mm", *tool.neck_diameter_mm) + line("neck_length_mm", neck_mm);
+    if (tool.shank_diameter_mm) out += line("shank_diameter_mm", *tool.shank_diameter_mm);
+  }
+  for (const auto& part : tool.holder)
+    rows += fmt::format("{}[{}, {}, {}]", rows.empty() ? "" : ", ", toml_number(part.lower_diameter_mm, kAsIs),
+                        toml_number(part.upper_diameter_mm, kAsIs), toml_number(part.length_mm, kAsIs));
+  return rows.empty() ? out : out + fmt::format("holder_mm = [{}]\n", rows);
+}
+
+namespace {
+
+/// Whether two descriptions may be of one cutter: what both tell of type and diameter agrees.
+bool may_be_same(const ToolProposal& a, const ToolProposal& b) {
+  constexpr double kRounding = 0.01;
+  if (a.type && b.type && a.type != b.type) return false;
+  return !a.diameter_mm || !b.diameter_mm || std::abs(*a.diameter_mm - *b.diameter_mm) <= kRounding * *a.diameter_mm;
+}
+
+}  // namespace
+
+void add_tools(std::vector<ToolProposal>& known, const std::vector<ToolProposal>& library) {
+  for (ToolProposal& tool : known) {
+    const ToolProposal* other = nullptr;
+    const ToolProposal* same = nullptr;
+    for (const ToolProposal& candidate : library) {
+      if (!tool.number || candidate.number != tool.number) continue;
+      const ToolProposal*& kind = may_be_same(tool, candidate) ? same : other;
+      if (!kind) kind = &candidate;
+    }
+    if (same)
+      complete(tool, *same);
+    else if (other && tool.doubt.empty())
+      tool.doubt = fmt::format("{} has another cutter of this number: {}", other->from, other->what);
+  }
+  const std::size_t before = known.size();
+  for (const ToolProposal& tool : library) {
+    if (!tool.number) continue;
+    const auto same = std::ranges::find(known, tool.number, &ToolProposal::number);
+    if (same == known.end())
+      known.push_back(tool);
+    else if (static_cast<std::size_t>(same - known.begin()) >= before)
+      same->doubt = fmt::format("{} is another cutter of this number: {}", tool.from, tool.what);
+  }
 }
 
 }  // namespace camber::machine

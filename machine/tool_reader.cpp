@@ -128,6 +128,7 @@ void check_overhang(TomlTable& table, const Tool& tool) {
 Tool read_tool(TomlTable table, int number) {
   Tool tool;
   tool.number = number;
+  table.text("name", "");  // for the people of the shop, and for `from`
   const auto type = table.required_choice("type", kToolTypeWords);
   for (const auto& k : kToolKeys)
     if ((k.key == "diameter_mm" || k.key == "overhang_mm") && !table.has(k.key)) table.missing(k.key, k.range.wanted());
@@ -142,6 +143,7 @@ Tool read_tool(TomlTable table, int number) {
   read_holder(table, tool);
   if (tool.flutes > 0) read_teeth(table, tool);
   check_overhang(table, tool);
+  table.ignore("assumed");  // assumptions.h
   if (type) check_profile(table, tool);
   table.finish();
   return tool;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <regex>
 
 #include <fmt/format.h>
@@ -39,38 +40,92 @@ std::optional<double> size_of(const std::string& text) {
 }
 
 bool is_end_mill(const std::string& words) {
-  return has(words, "END MILL") || has(words, "ENDMILL") || has(words, "END_MILL") || has(words, "E.M.");
+  return has(words, "END MILL") || has(words, "ENDMILL") || has(words, "END-MILL") || has(words, "E.M.") ||
+         has(words, "FEM") || has(words, "SCHAFT") || has(words, "ROUTER") || has(words, "CUT BIT") ||
+         has(words, "DOWNCUT") || has(words, "UPCUT") || has(words, "COMPRESSION") || has(words, "O FLUTE") ||
+         has(words, "SLOT DRILL");
 }
 
+/// The word alone, not as a part of another one.
+bool has_word(const std::string& words, const std::string& pattern) {
+  static thread_local std::map<std::string, std::regex> known;
+  const auto at = known.find(pattern);
+  const std::regex& regex = at != known.end()
+                                ? at->second
+                                : known.emplace(pattern, "(?:^|[^A-Z])(?:" + pattern + ")(?:[^A-Z]|$)").first->second;
+  return std::regex_search(words, regex);
+}
+
+/// "90 V GROOVE", "V-BIT", "VBIT", "ENGRAVE 30": named by the angle between their sides.
+bool is_v_bit(const std::string& words) {
+  return has_word(words, "V[ -]?(?:BIT|GROOVE|CARVE|CUTTER|MILL|TOOL)") ||
+         has_word(words, "V ?[1-9]\\d{1,2} ?(?:DEG|GRAD)?") || has(words, "ENGRAV") || has(words, "GRAVIER");
+}
+
+/// A cutter of any kind, in the languages that programs are met in; longest words first where one holds another.
 std::optional<ToolType> type_of(const std::string& words, const ToolProposal& tool) {
-  if (has(words, "CORNER ROUNDING")) return std::nullopt;
+  if (has(words, "CORNER ROUND") || has(words, "PROBE") || has(words, "DOVETAIL") || has(words, "T-SLOT") ||
+      has(words, "T SLOT") || has_word(words, "SAW"))
+    return std::nullopt;
   if (has(words, "TAPER") && has(words, "BALL")) return ToolType::tapered_ball;
-  if (has(words, "BALL") || has(words, "SPHER")) return ToolType::ball;
+  if (has(words, "BALL") || has(words, "SPHER") || has(words, "KUGEL") || has(words, "HEMISPH") ||
+      has(words, "SFERIC") || has(words, "BOULE") || has_word(words, "BEM|BNEM|BN|B/E"))
+    return ToolType::ball;
   if (is_end_mill(words) && has(words, "CHAMFERS")) return ToolType::flat;
-  if (has(words, "CHAMFER") || has(words, "COUNTERSINK")) return ToolType::chamfer;
-  if (has(words, "DRILL") || has(words, "SPOT")) return ToolType::drill;
+  if (is_v_bit(words) || has(words, "CHAMFER") || has(words, "COUNTERSINK") || has(words, "SENKER") ||
+      has(words, "ENTGRAT") || has(words, "ENTFR") || has(words, "CHANFR") || has(words, "DEBURR"))
+    return ToolType::chamfer;
+  if (has(words, "SLOT DRILL")) return ToolType::flat;
+  if (has(words, "DRILL") || has(words, "SPOT") || has(words, "BOHRER") || has_word(words, "FORET|BROCA|PUNTA"))
+    return ToolType::drill;
   if (has(words, "THREAD")) return std::nullopt;
-  if (has(words, "TAP ") || has(words, "REAM")) return ToolType::drill;
-  if (has(words, "BULL") || tool.corner_radius_mm.value_or(0) > 0) return ToolType::bull;
-  if (has(words, "FLAT") || is_end_mill(words) || has(words, "FACE MILL")) return ToolType::flat;
+  if (has_word(words, "TAP") || has(words, "REAM")) return ToolType::drill;
+  if (has(words, "BULL") || has(words, "TORUS") || has(words, "TORIC") || tool.corner_radius_mm.value_or(0) > 0)
+    return ToolType::bull;
+  if (has(words, "FLAT") || is_end_mill(words) || has(words, "FACE MILL") || has(words, "FACEMILL") ||
+      has(words, "FLY CUT") || has(words, "FLYCUT") || has(words, "FRAESER") || has(words, "FRASER") ||
+      has(words, "FR\xc3\x84SER") || has(words, "FR\xc3\xa4SER") ||
+      has_word(words, "MILL|FRAISE|FRESA|FREZA|BIT|ROUGHER"))
+    return ToolType::flat;
   return std::nullopt;
+}
+
+constexpr const char* kNumber = R"((\d+-\d+/\d+|\d+/\d+|\d*\.?\d+\.?))";
+constexpr const char* kUnit = R"((\s*MM|\s*"|\s*''|\s*IN(?:CH(?:ES)?)?\b)?)";
+
+/// A size with its own unit, or the program's; a fraction is in inches everywhere.
+std::optional<double> size_mm(const std::string& number, const std::string& unit, bool inch) {
+  const auto size = size_of(number);
+  if (!size || *size <= 0) return std::nullopt;
+  if (has(unit, "MM")) return *size;
+  const bool in_inch = !unit.empty() || inch || has(number, "/");
+  return *size * (in_inch ? kMmPerInch : 1);
+}
+
+/// The first size that the pattern finds; "NUM" in it stands for a number and its unit.
+std::optional<double> find_size(const std::string& words, std::string pattern, bool inch) {
+  static thread_local std::map<std::string, std::regex> known;
+  const std::size_t at = pattern.find("NUM");
+  pattern.replace(at, 3, std::string(kNumber) + kUnit);
+  const std::regex& regex = known.try_emplace(pattern, pattern).first->second;
+  std::smatch m;
+  if (!std::regex_search(words, m, regex)) return std::nullopt;
+  return size_mm(m[1].str(), m[2].str(), inch);
 }
 
 /// The bare size that Mastercam begins with; in inches where it has the sign.
 void read_bare_size(const std::string& words, bool inch, ToolProposal& tool) {
-  static const std::regex kSize(R"(^[\s|]*([\d./-]*\d\.?)(\s*MM|\s*")?(?=[\s|]|$))");
+  static const std::regex kSize(std::string(R"(^[\s|]*)") + kNumber + kUnit + R"((?=[\s|]|$))");
   std::smatch m;
   if (!std::regex_search(words, m, kSize)) return;
+  const std::string unit = m[2].str();
   const auto size = size_of(m[1].str());
   if (!size) return;
-  const std::string unit = m[2].str();
-  const bool says_mm = has(unit, "MM"), says_inch = has(unit, "\"");
-  bool in_inch = says_inch || (inch && !says_mm);
-  if (in_inch && !says_inch && *size >= kLargestBareInch) {
-    in_inch = false;
+  if (inch && unit.empty() && *size >= kLargestBareInch) {
     tool.doubt = fmt::format("the size {} has no unit in a program in inches; taken as mm", m[1].str());
+    inch = false;
   }
-  tool.diameter_mm = *size * (in_inch ? kMmPerInch : 1);
+  tool.diameter_mm = size_mm(m[1].str(), unit, inch);
 }
 
 /// "#30 DRILL", "NO. 33 DRILL", "LET. B DRILL": sizes by the gauge; "4.00-0.7 TAP": a metric thread and its pitch.
@@ -88,125 +143,104 @@ void read_gauge(const std::string& words, ToolProposal& tool) {
 
 /// What the job's tool types leave out of these words.
 std::string doubt_of(const std::string& words) {
-  if (has(words, "CORNER ROUNDING")) return "type \"general\" describes its profile (docs/cutters.md)";
+  if (has(words, "CORNER ROUND")) return "type \"general\" describes its profile (docs/cutters.md)";
+  if (has(words, "DOVETAIL") || has(words, "T-SLOT") || has(words, "T SLOT")) return "its undercut is left out";
   if (is_end_mill(words) && has(words, "CHAMFERS")) return "the chamfers of its corners are left out";
-  if (has(words, "TAP ") || has(words, "REAM")) return "taps and reamers stand as drills: they make holes alone";
+  if (has_word(words, "TAP") || has(words, "REAM")) return "taps and reamers stand as drills: they make holes alone";
   return {};
 }
 
-/// "45 DEG CHAMFER MILL" counts from the axis, "90 DEG SPOT DRILL" between the sides; the sign in Latin-1 or UTF-8.
+/// "45 DEG CHAMFER MILL" counts from the axis, "90 DEG SPOT DRILL" and "60 V-BIT" between the sides; the sign in
+/// Latin-1 or UTF-8.
 void read_angle(const std::string& words, ToolProposal& tool) {
-  static const std::regex kAngle("(\\d{2,3})\\s*(?:\xb0|\xc2\xb0|DEG)");
+  static const std::regex kAngle("(\\d{2,3})(?:\\.\\d*)?\\s*-?\\s*(?:\xb0|\xc2\xb0|DEG|GRAD)"),
+      kBeforeV(R"((\d{2,3})\s*-?\s*V[ -]?(?:BIT|GROOVE|CARVE|CUTTER|MILL|TOOL))"),
+      kBehindV(R"((?:^|[^A-Z])V[ -]?(?:BIT|GROOVE|CARVE|CUTTER|MILL|TOOL)?[ -]?([1-9]\d{1,2})(?![\d./]))");
   std::smatch m;
-  if (!std::regex_search(words, m, kAngle)) return;
+  const bool v_bit = is_v_bit(words);
+  if (!std::regex_search(words, m, kAngle) &&
+      !(v_bit && (std::regex_search(words, m, kBeforeV) || std::regex_search(words, m, kBehindV))))
+    return;
   const double angle_deg = std::stod(m[1].str());
   if (tool.type == ToolType::chamfer)
-    tool.point_angle_deg = angle_deg < 60 ? 2 * angle_deg : angle_deg;
+    tool.point_angle_deg = angle_deg < 60 && !v_bit ? 2 * angle_deg : angle_deg;
   else if (tool.type == ToolType::drill)
     tool.point_angle_deg = angle_deg;
   if (tool.point_angle_deg && (*tool.point_angle_deg < 10 || *tool.point_angle_deg > 170)) tool.point_angle_deg.reset();
 }
 
-std::optional<double> named_size(const std::string& words, const std::regex& name, double unit_mm) {
-  std::smatch m;
-  if (!std::regex_search(words, m, name)) return std::nullopt;
-  const auto size = size_of(m[1].str());
-  return size ? std::optional<double>(*size * unit_mm) : std::nullopt;
+/// "DIA. - .5", "D=10.", "1/4 DIAMETER", "6MM", "MILL_D10R1": the most outspoken first.
+void read_diameter(const std::string& words, bool inch, ToolProposal& tool) {
+  static const std::regex kShankDiameter(R"(SHANK\s*DIA(?:METER)?)");
+  tool.diameter_mm = find_size(words, R"((?:^[\s|]*|[^-.=#:\d/\s"]\s*)NUM\s*DIA(?:M|METER)?\b)", inch);
+  if (!tool.diameter_mm && has(words, "DIA"))
+    tool.diameter_mm =
+        find_size(std::regex_replace(words, kShankDiameter, "SHANK"), R"(\bDIA(?:M|METER)?\b\.?\s*[-=:]*\s*NUM)", inch);
+  if (!tool.diameter_mm) tool.diameter_mm = find_size(words, R"(\bD\s*[=:]\s*NUM)", inch);
+  if (!tool.diameter_mm) read_gauge(words, tool);
+  if (!tool.diameter_mm) read_bare_size(words, inch, tool);
+  if (tool.diameter_mm) return;
+  // "MILL D10R1", not the offsets of "|H1|D1|".
+  static const std::regex kLengthOffset(R"(\bH\d+\b)");
+  if (!std::regex_search(words, kLengthOffset))
+    tool.diameter_mm = find_size(words, R"(\bD\s?NUM(?=R\d|[^\d]|$))", inch);
+  // Of what is left once other sizes are taken out: one with a unit, a fraction, a number with a point.
+  static const std::regex kOthers(
+      R"((?:\d*\.?\d+/?\d*\s*(?:MM|"|IN)?\s*(?:SHANK|SHK|LOC|OAL|FLUTE|FL\b|RAD|DEG|GRAD|LONG|STICK|OVERHANG|V[ -]?(?:BIT|GROOVE)))|(?:(?:SHANK|SHK|LOC|OAL|LEN\w*|LENGTH|RAD\w*|CR|ZMIN|STICK\w*|OVERHANG|TIP)\s*[-=:.]*\s*-?\d*\.?\d+/?\d*\s*(?:MM|"|IN)?))");
+  const std::string left = std::regex_replace(words, kOthers, " ");
+  static const std::regex kAnySize(std::string(R"((?:^|[^\dA-Z./#]))") + kNumber + kUnit);
+  for (std::sregex_iterator at(left.begin(), left.end(), kAnySize), end; at != end && !tool.diameter_mm; ++at) {
+    const std::string number = (*at)[1].str(), unit = (*at)[2].str();
+    if (!unit.empty() || has(number, "/") || has(number, ".")) tool.diameter_mm = size_mm(number, unit, inch);
+  }
+  // "BALL R3": twice the radius.
+  if (!tool.diameter_mm && tool.type == ToolType::ball)
+    if (const auto radius = find_size(words, R"(\bR\s?NUM(?=[^\d]|$))", inch)) tool.diameter_mm = 2 * *radius;
+}
+
+void read_corner(const std::string& words, bool inch, ToolProposal& tool) {
+  for (const char* pattern :
+       {R"((?:\bCR\s*=\s*|\bRAD[\s.=-]+|\bRADIUS\s*[=:-]\s*|\bR\s*=\s*)NUM)", R"(NUM\s*RAD(?:IUS)?\b)",
+        R"(\bD\s?[\d.]+\s?R\s?NUM)", R"(\b(?:BULL|TORUS|TORIC)\w*[ A-Z]*\bR\s?NUM)"})
+    if (!tool.corner_radius_mm) tool.corner_radius_mm = find_size(words, pattern, inch);
+}
+
+/// What sticks out, what cuts, and what is above it.
+void read_lengths(const std::string& words, bool inch, ToolProposal& tool) {
+  tool.overhang_mm = find_size(
+      words, R"(\b(?:STICK[ -]?OUT|OVERHANG|OHL|PROJECTION|EXTENSION|AUSKRAG\w*|AUSSPANN\w*)\s*[-=:.]*\s*NUM)", inch);
+  if (!tool.overhang_mm)
+    tool.overhang_mm = find_size(words, R"((?:^|[^\d./])NUM\s*(?:STICK[ -]?OUT|OVERHANG)\b)", inch);
+  tool.flute_length_mm = find_size(words, R"(\b(?:FLUTE ?LENGTH|CUT(?:TING)? ?LENGTH|LOC|LCF)\s*[-=:.]*\s*NUM)", inch);
+  if (!tool.flute_length_mm) tool.flute_length_mm = find_size(words, R"((?:^|[^\d./])NUM\s*LOC\b)", inch);
+  tool.shank_diameter_mm = find_size(words, R"((?:^|[^\d./])NUM\s*(?:DIA\w*\s*)?(?:SHANK|SHK)\b)", inch);
+  if (!tool.shank_diameter_mm)
+    tool.shank_diameter_mm = find_size(words, R"(\b(?:SHANK|SHK)\s*(?:DIA(?:METER)?)?\s*[-=:.]*\s*NUM)", inch);
 }
 
 }  // namespace
 
 ToolProposal tool_of_words(std::string_view text, bool inch) {
-  static const std::regex kDiameter(R"((?:\bD\s*=\s*|\bDIA[\s.=-]*)([\d./]*\d\.?))"),
-      kCorner(R"((?:\bCR\s*=\s*|\bRAD[\s.=-]+|\bR\s*=\s*)([\d./]*\d\.?))"),
-      kCornerAfter(R"(([\d./]*\d\.?)\s*"?\s*RAD(?:IUS)?\b)"), kFlutes(R"((\d+)\s*-?\s*FL(?:UTES?|T)?\b)"),
-      kSizeBeforeDia(R"(^[\s|]*[\d./-]*\d\.?\s*(?:MM|")?\s*DIA\b)");
-  const std::string words = upper(text);
-  const double unit_mm = inch ? kMmPerInch : 1;
+  static const std::regex kFlutes(R"((\d+)\s*-?\s*FL(?:UTES?|T)?\b)");
+  constexpr double kCarbide_GPa = 600, kSteel_GPa = 210;
+  std::string words = upper(text);
+  std::ranges::replace(words, '_', ' ');
   ToolProposal tool;
   tool.what = std::string(text);
-  // 1/2" DIA. 2 FLUTE: the number behind belongs to the flutes.
-  if (std::regex_search(words, kSizeBeforeDia)) read_bare_size(words, inch, tool);
-  if (!tool.diameter_mm) tool.diameter_mm = named_size(words, kDiameter, unit_mm);
-  if (!tool.diameter_mm) read_gauge(words, tool);
-  if (!tool.diameter_mm) read_bare_size(words, inch, tool);
-  tool.corner_radius_mm = named_size(words, kCorner, unit_mm);
-  if (!tool.corner_radius_mm) tool.corner_radius_mm = named_size(words, kCornerAfter, unit_mm);
+  read_corner(words, inch, tool);
+  tool.type = type_of(words, tool);
+  read_diameter(words, inch, tool);
   if (tool.diameter_mm && *tool.diameter_mm <= 0) tool.diameter_mm.reset();
   std::smatch m;
-  if (std::regex_search(words, m, kFlutes) && m[1].length() <= 2) tool.flutes = std::stoi(m[1].str());
-  tool.type = type_of(words, tool);
+  if (std::regex_search(words, m, kFlutes) && m[1].length() <= 2 && std::stoi(m[1].str()) > 0)
+    tool.flutes = std::stoi(m[1].str());
   if (tool.type != ToolType::bull) tool.corner_radius_mm.reset();
+  read_lengths(words, inch, tool);
+  if (has_word(words, "HSS")) tool.youngs_modulus_GPa = kSteel_GPa;
+  if (has(words, "CARBIDE") || has_word(words, "VHM")) tool.youngs_modulus_GPa = kCarbide_GPa;
   read_angle(words, tool);
   if (tool.doubt.empty()) tool.doubt = doubt_of(words);
   return tool;
-}
-
-namespace {
-
-/// The tool of the change that follows within a few lines: "( 1/2\" DIA. 2 FLUTE E.M. )", then "T2" and "M06", on one
-/// line or two. Nothing where the program moves in between.
-std::optional<int> tool_of_next_change(const SourceText& program, std::size_t line) {
-  constexpr std::size_t kReach = 8;
-  static const std::regex kTool(R"(T\s*0*(\d{1,6})(?!\d))", std::regex::icase),
-      kChange(R"(M\s*0?6(?!\d))", std::regex::icase), kMotion(R"([XY]\s*[-+.\d])", std::regex::icase),
-      kComment(R"(\([^)]*\)|;.*)");
-  std::optional<int> tool;
-  for (std::size_t at = line + 1; at <= std::min(line + kReach, program.line_count()); ++at) {
-    const std::string words =
-        std::regex_replace(std::string(program.line(at).substr(0, kLongestComment)), kComment, "");
-    std::smatch m;
-    if (std::regex_search(words, m, kTool)) tool = std::stoi(m[1].str());
-    if (std::regex_search(words, kChange)) return tool;
-    if (std::regex_search(words, kMotion)) return std::nullopt;
-  }
-  return std::nullopt;
-}
-
-/// A comment alone on its line that gives a tool's type and size, above the change that brings the tool in.
-std::optional<ToolProposal> tool_above_change(const SourceText& program, std::size_t line, const std::string& text,
-                                              bool inch) {
-  static const std::regex kAlone(R"(^\s*(?:N\d+\s*)?\(([^)]+)\)?\s*$)");
-  std::smatch m;
-  if (!std::regex_search(text, m, kAlone)) return std::nullopt;
-  ToolProposal tool = tool_of_words(m[1].str(), inch);
-  if (!tool.diameter_mm || (!tool.type && tool.doubt.empty())) return std::nullopt;
-  const auto number = tool_of_next_change(program, line);
-  if (!number) return std::nullopt;
-  tool.number = *number;
-  return tool;
-}
-
-/// A comment that names the tool's number, or stands beside it.
-std::optional<ToolProposal> tool_named(const std::string& text, bool inch) {
-  static const std::regex kNamed(R"([(;]\s*T\s*0*(\d{1,6})(?!\d)([^)]*))", std::regex::icase),
-      kBeside(R"(^(?=[^(;]*M0?6(?!\d))[^(;]*?T\s*0*(\d{1,6})(?!\d)[^(;]*[(;]([^)]+))", std::regex::icase);
-  if (text.find_first_of("Tt") == std::string::npos) return std::nullopt;
-  std::smatch m;
-  if (!std::regex_search(text, m, kNamed) && !std::regex_search(text, m, kBeside)) return std::nullopt;
-  ToolProposal tool = tool_of_words(m[2].str(), inch);
-  tool.number = std::stoi(m[1].str());
-  return tool;
-}
-
-}  // namespace
-
-std::vector<ToolProposal> tools_in_comments(const SourceText& program, bool inch) {
-  std::vector<ToolProposal> out;
-  for (std::size_t line = 1; line <= program.line_count(); ++line) {
-    const std::string text(program.line(line).substr(0, kLongestComment));
-    if (text.find_first_of("(;") == std::string::npos) continue;
-    std::optional<ToolProposal> tool = tool_named(text, inch);
-    if (!tool) tool = tool_above_change(program, line, text, inch);
-    if (!tool) continue;
-    tool->from = fmt::format("{}:{}", program.name(), line);
-    const auto same = std::find_if(out.begin(), out.end(), [&](const auto& t) { return t.number == tool->number; });
-    if (same == out.end())
-      out.push_back(std::move(*tool));
-    else
-      complete(*same, *tool);
-  }
-  return out;
 }
 
 void complete(ToolProposal& tool, const ToolProposal& other) {
@@ -222,6 +256,12 @@ void complete(ToolProposal& tool, const ToolProposal& other) {
   fill(tool.flutes, other.flutes);
   fill(tool.youngs_modulus_GPa, other.youngs_modulus_GPa);
   fill(tool.point_angle_deg, other.point_angle_deg);
+  fill(tool.tip_diameter_mm, other.tip_diameter_mm);
+  fill(tool.taper_deg, other.taper_deg);
+  fill(tool.neck_diameter_mm, other.neck_diameter_mm);
+  fill(tool.shoulder_length_mm, other.shoulder_length_mm);
+  fill(tool.overall_length_mm, other.overall_length_mm);
+  if (tool.holder.empty()) tool.holder = other.holder;
 }
 
 }  // namespace camber::machine

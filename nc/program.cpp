@@ -618,6 +618,11 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
   program.source = std::move(source);
   Reporter report(program.source, diagnostics);
   Reporter behind_end(program.source, diagnostics);  // of text that no control reads
+  if (auto foreign = foreign_program(program.source.text())) {
+    report.error(foreign->offset, foreign->word.check, std::move(foreign->word.message));
+    report.finish();
+    diagnostics.throw_if_errors();
+  }
   const bool whole = Scanner(program, report, behind_end).run();
   for (const MacroError& e : link_statements(program.macro)) {
     report.error(e.offset, e.check, e.what());

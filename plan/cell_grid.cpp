@@ -82,7 +82,7 @@ void CellGrid::each(Function f) {
       for (int z = 0; z < count(2); ++z) f(CellIndex{x, y, z});
 }
 
-void CellGrid::add(const Solid& solid, double Cell::*field, bool faces) {
+void CellGrid::add(const Solid& solid, double Cell::*field, double Cell::*free_form_area, double Cell::*overhang_area) {
   constexpr double kUpright = 0.01, kLevel = 1 - 1.5e-6;
   for (const Triangle& t : solid.triangles) {
     Polygon whole;
@@ -90,7 +90,7 @@ void CellGrid::add(const Solid& solid, double Cell::*field, bool faces) {
     const Vec3 n = solid.normal_by_area(t);
     const double slope = n.norm() > 0 ? n.z() / n.norm() : 0;
     if (slope == 0) continue;
-    const bool free_form = faces && std::abs(slope) > kUpright && std::abs(slope) < kLevel;
+    const bool free_form = free_form_area != nullptr && std::abs(slope) > kUpright && std::abs(slope) < kLevel;
     Vec3 low = whole.points[0], high = low;
     for (std::size_t c = 1; c < 3; ++c) low = low.cwiseMin(whole.points[c]), high = high.cwiseMax(whole.points[c]);
     for (int x = first_cell(planes_[0], low.x()); x < count(0) && plane_mm(0, x) < high.x(); ++x) {
@@ -115,29 +115,58 @@ void CellGrid::add(const Solid& solid, double Cell::*field, bool faces) {
           if (in.count >= 3) cell.*field += in_area * (mean_z - from);
           if (above.count >= 3) cell.*field += area_of(above, above_z) * (to - from);
           if (!free_form || in_area == 0) continue;
-          cell.free_form_mm2 += std::abs(in_area / slope);
-          if (slope < 0) cell.overhang_mm2 += std::abs(in_area / slope);
+          cell.*free_form_area += std::abs(in_area / slope);
+          if (overhang_area != nullptr && slope < 0) cell.*overhang_area += std::abs(in_area / slope);
         }
       }
     }
   }
 }
 
+/// Of a cell's faces: less free-form face is none.
+constexpr double kFreeForm = 1e-4;
+
 void CellGrid::classify(double tolerance_mm) {
   each([&](const CellIndex& c) {
     Cell& cell = at(c);
-    double thin = 0;
-    for (int a = 0; a < 3; ++a) thin += tolerance_mm * face_mm2(c, a);
-    const bool stays = cell.part_mm3 > thin, goes = cell.removal_mm3() > thin;
-    if (cell.fixture_mm3 > thin)
+    const double faces = faces_mm2(c), of_part = cell.free_form_mm2, of_both = of_part + cell.blank_free_form_mm2;
+    const auto counts = [&](double volume, double free_form) {
+      return volume > tolerance_mm * faces || (free_form > kFreeForm * faces && volume > tolerance_mm * free_form);
+    };
+    const bool stays = counts(cell.part_mm3, of_part), goes = counts(cell.removal_mm3(), of_both);
+    if (cell.fixture_mm3 > tolerance_mm * faces)
       cell.kind = CellKind::fixture;
     else if (!goes)
       cell.kind = stays ? CellKind::part : CellKind::air;
     else if (!stays)
       cell.kind = CellKind::clear;
     else
-      cell.kind = cell.free_form_mm2 > thin / tolerance_mm * 1e-4 ? CellKind::free_form : CellKind::contoured;
+      cell.kind = of_part > kFreeForm * faces ? CellKind::free_form : CellKind::contoured;
   });
+  join_skins();
+}
+
+/// A skin over a free-form surface ends in cells in which nothing of the part is: they go with it.
+void CellGrid::join_skins() {
+  std::vector<CellIndex> skins;
+  each([&](const CellIndex& c) {
+    if (at(c).kind == CellKind::clear && at(c).blank_free_form_mm2 > kFreeForm * faces_mm2(c)) skins.push_back(c);
+  });
+  const auto beside = [&](const CellIndex& c) {
+    for (const CellIndex& n :
+         {CellIndex{c.x - 1, c.y, c.z}, CellIndex{c.x + 1, c.y, c.z}, CellIndex{c.x, c.y - 1, c.z},
+          CellIndex{c.x, c.y + 1, c.z}, CellIndex{c.x, c.y, c.z - 1}, CellIndex{c.x, c.y, c.z + 1}})
+      if (holds(n) && at(n).kind == CellKind::free_form) return true;
+    return false;
+  };
+  for (bool any = true; any;) {
+    any = false;
+    std::erase_if(skins, [&](const CellIndex& c) {
+      if (!beside(c)) return false;
+      at(c).kind = CellKind::free_form;
+      return any = true;
+    });
+  }
 }
 
 }  // namespace camber::plan

@@ -12,14 +12,15 @@ enum class CellKind : unsigned char {
   part,       ///< what is there stays
   clear,      ///< everything in it is to be removed
   contoured,  ///< a part of it stays; all faces there are upright or along the axes
-  free_form,  ///< a part of it stays, with a free-form face
+  free_form,  ///< a part of it stays, with a free-form face; or the end of a free-form skin of the blank
   fixture     ///< the tool may not go there
 };
 
 struct Cell {
   double blank_mm3 = 0, part_mm3 = 0, fixture_mm3 = 0;
-  double free_form_mm2 = 0;  ///< of the part's faces in it
-  double overhang_mm2 = 0;   ///< of these, looking down
+  double free_form_mm2 = 0;        ///< of the part's faces in it
+  double overhang_mm2 = 0;         ///< of these, looking down
+  double blank_free_form_mm2 = 0;  ///< of the blank's faces in it
   CellKind kind = CellKind::air;
   double removal_mm3() const { return blank_mm3 > part_mm3 ? blank_mm3 - part_mm3 : 0; }
 };
@@ -54,14 +55,18 @@ class CellGrid {
   double face_mm2(const CellIndex& c, int axis) const;
 
   /// Adds the volume of a solid in each cell to `field`, exactly: each triangle is clipped to the cells' columns, and
-  /// the space under it counts. With `faces` also the areas of free-form faces.
-  void add(const Solid& solid, double Cell::*field, bool faces);
-  /// Sets the kinds. What is thinner than `tolerance_mm` over a cell's faces does not count.
+  /// the space under it counts. Where given also the areas of free-form faces, and of those that look down.
+  void add(const Solid& solid, double Cell::*field, double Cell::*free_form = nullptr,
+           double Cell::*overhang = nullptr);
+  /// Sets the kinds. What is thinner than `tolerance_mm` over a cell's faces does not count; of a free-form surface,
+  /// which a cell may hold a small part of, what is thinner over that part.
   void classify(double tolerance_mm);
 
  private:
   template <class Function>
   void each(Function f);
+  double faces_mm2(const CellIndex& c) const { return face_mm2(c, 0) + face_mm2(c, 1) + face_mm2(c, 2); }
+  void join_skins();
 
   std::array<std::vector<AxisPlane>, 3> planes_;
   std::vector<Cell> cells_;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "machine/job_tables.h"
+#include "machine/machine_presets.h"
 #include "machine/material_reader.h"
 #include "machine/number_key.h"
 #include "machine/tool_reader.h"
@@ -198,11 +199,12 @@ PlanInput read_plan_input(const std::string& path, Diagnostics& diagnostics) {
   PlanInput plan;
   plan.path = path;
   read_shapes(top, folder, plan);
-  plan.machine_path = required_path(top, "machine", folder);
+  plan.machine_path = machine::machine_path_at(top, folder);
   const std::string cases = required_path(top, "case_base", folder);
   read_tables(top, folder, plan, diagnostics);
   std::error_code ec;
-  if (fs::is_regular_file(plan.machine_path, ec)) plan.machine = machine::read_machine(plan.machine_path, diagnostics);
+  if (machine::find_machine_preset(plan.machine_path) || fs::is_regular_file(plan.machine_path, ec))
+    plan.machine = machine::read_machine(plan.machine_path, diagnostics);
   if (fs::is_regular_file(cases, ec)) plan.cases = read_case_base(cases, diagnostics);
   plan.tool_change_s = tool_change_s(top, plan.machine);
   top.finish();

@@ -101,9 +101,9 @@ RemovalVolume removal_volume(const RemovalInput& input) {
   out.part_mm3 = volume_mm3(input.part);
   for (const Hole& h : input.part_holes) out.part_mm3 -= h.volume_mm3;
   out.free_form_mm2 = part.free_form_mm2;
-  out.grid.add(input.blank, &Cell::blank_mm3, false);
-  out.grid.add(part.plugged, &Cell::part_mm3, true);
-  for (const Solid& f : input.fixtures) out.grid.add(f, &Cell::fixture_mm3, false);
+  out.grid.add(input.blank, &Cell::blank_mm3, &Cell::blank_free_form_mm2);
+  out.grid.add(part.plugged, &Cell::part_mm3, &Cell::free_form_mm2, &Cell::overhang_mm2);
+  for (const Solid& f : input.fixtures) out.grid.add(f, &Cell::fixture_mm3);
   take_machined(input, out.grid);
   const double tolerance = std::max(input.tolerance_mm, input.faces.plane_tolerance_mm);
   out.grid.classify(tolerance);

@@ -20,6 +20,15 @@ pybind11::array column(const pybind11::object& owner, const std::vector<Row>& ro
   return view;
 }
 
+/// Three double fields that stand behind each other, as an array of (n, 3); otherwise as column().
+template <class Row>
+pybind11::array vectors(const pybind11::object& owner, const std::vector<Row>& rows, double Row::*first) {
+  const double* at = rows.empty() ? nullptr : &(rows.front().*first);
+  pybind11::array_t<double> view({rows.size(), std::size_t{3}}, {sizeof(Row), sizeof(double)}, at, owner);
+  view.attr("setflags")(pybind11::arg("write") = false);
+  return view;
+}
+
 /// The rows of a result as an object with an attribute for each column.
 template <class Row>
 struct Table {
@@ -33,6 +42,11 @@ class TableClass {
   TableClass(pybind11::module_& module, const char* name) : class_(module, name) {
     class_.def("__len__", [](const Table<Row>& t) { return t.rows->size(); });
     class_.def_property_readonly_static("columns", [names = names_](const pybind11::object&) { return *names; });
+  }
+  /// (n, 3): three fields that stand behind each other in a row, "x_mm", "y_mm", "z_mm".
+  TableClass& add_vectors(const char* name, double Row::*first) {
+    class_.def_property_readonly(name, [first](const Table<Row>& t) { return vectors(t.owner, *t.rows, first); });
+    return *this;
   }
   template <class Field>
   TableClass& add(const char* name, Field Row::*field) {

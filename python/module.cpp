@@ -99,21 +99,22 @@ camber::TimeResult time(const py::object& program, const py::object& machine, co
 }
 
 camber::FitFeedResult fit_feed(const std::vector<std::pair<py::object, Path>>& traces, const py::object& machine,
-                               const std::optional<Path>& columns, const py::object& progress, bool strict,
+                               const std::optional<Path>& columns, bool update, const py::object& progress, bool strict,
                                int threads) {
   const camber::Machine start = machine_of(machine);
   std::vector<camber::FeedTrace> runs;
   for (const auto& [program, trace] : traces) runs.push_back({program_of(program), trace.string()});
   std::optional<camber::FitFeedResult> result;
   call({progress, strict, threads}, [&](const camber::RunOptions& run) {
-    result = camber::fit_feed(runs, start, {.columns = columns ? columns->string() : std::string()}, run);
+    result =
+        camber::fit_feed(runs, start, {.columns = columns ? columns->string() : std::string(), .update = update}, run);
   });
   return *std::move(result);
 }
 
 camber::PredictResult predict(const py::object& job, bool feed, const std::optional<Path>& output_folder,
                               std::size_t forces_at, const std::optional<Path>& trace,
-                              const std::optional<Path>& columns, const py::object& progress, bool strict,
+                              const std::optional<Path>& columns, bool meshes, const py::object& progress, bool strict,
                               int threads) {
   const camber::Job given = job_of(job);
   camber::PredictResult result;
@@ -123,7 +124,8 @@ camber::PredictResult predict(const py::object& job, bool feed, const std::optio
                               .output_folder = output_folder ? output_folder->string() : std::string(),
                               .forces_at = forces_at,
                               .trace = trace ? trace->string() : std::string(),
-                              .columns = columns ? columns->string() : std::string()},
+                              .columns = columns ? columns->string() : std::string(),
+                              .meshes = meshes},
                              run);
   });
   return result;
@@ -221,12 +223,13 @@ void add_functions(py::module_& module) {
   module.def("time", time, "program"_a, "machine"_a, py::kw_only(), "trace"_a = py::none(),
              "sweep"_a = std::vector<std::string>(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Cycle time by kind of operation and by tool.");
-  module.def("fit_feed", fit_feed, "traces"_a, "machine"_a, py::kw_only(), "columns"_a = py::none(),
+  module.def("fit_feed", fit_feed, "traces"_a, "machine"_a, py::kw_only(), "columns"_a = py::none(), "update"_a = false,
              "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Fits the feed model of a machine to pairs of a program and its trace.");
   module.def("predict", predict, "job"_a, py::kw_only(), "feed"_a = false, "output_folder"_a = py::none(),
-             "forces_at"_a = 0, "trace"_a = py::none(), "columns"_a = py::none(), "progress"_a = py::none(),
-             "strict"_a = false, "threads"_a = 0, "Cutting force, deflection and form error of a job.");
+             "forces_at"_a = 0, "trace"_a = py::none(), "columns"_a = py::none(), "meshes"_a = false,
+             "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "Cutting force, deflection and form error of a job.");
   module.def("compensate", compensate, "job"_a, py::kw_only(), "uncertainty"_a = std::vector<std::string>(),
              "measured"_a = py::none(), "measured_program"_a = py::none(), "check_voxels_mm"_a = std::vector<double>(),
              "time_budget_percent"_a = py::none(), "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false,

@@ -42,7 +42,8 @@ void add_tables(py::module_& module) {
       .add("vy_mm_per_min", &FeedPoint::vy_mm_per_min)
       .add("vz_mm_per_min", &FeedPoint::vz_mm_per_min)
       .add("feed_cmd_mm_per_min", &FeedPoint::feed_cmd_mm_per_min)
-      .add("feed_mm_per_min", &FeedPoint::feed_mm_per_min);
+      .add("feed_mm_per_min", &FeedPoint::feed_mm_per_min)
+      .add_vectors("points", &FeedPoint::x_mm);
   TableClass<camber::PosePoint>(module, "PosePoints")
       .add("a_deg", &camber::PosePoint::a_deg)
       .add("b_deg", &camber::PosePoint::b_deg)
@@ -77,7 +78,9 @@ void add_tables(py::module_& module) {
       .add("h_max_mm", &ForceRow::h_max_mm)
       .add("h_mean_mm", &ForceRow::h_mean_mm)
       .add("specific_energy_MPa", &ForceRow::specific_energy_MPa)
-      .add("f_axial_max_N", &ForceRow::f_axial_max_N);
+      .add("f_axial_max_N", &ForceRow::f_axial_max_N)
+      .add("valid", &ForceRow::valid)
+      .add_vectors("points", &ForceRow::x_mm);
   TableClass<ErrorPoint>(module, "ErrorPoints")
       .add("x_mm", &ErrorPoint::x_mm)
       .add("y_mm", &ErrorPoint::y_mm)
@@ -92,7 +95,10 @@ void add_tables(py::module_& module) {
       .add("model_error_um", &ErrorPoint::model_error_um)
       .add("area_mm2", &ErrorPoint::area_mm2)
       .add("block", &ErrorPoint::block)
-      .add("tool", &ErrorPoint::tool);
+      .add("tool", &ErrorPoint::tool)
+      .add("valid", &ErrorPoint::valid)
+      .add_vectors("points", &ErrorPoint::x_mm)
+      .add_vectors("normals", &ErrorPoint::nx);
   TableClass<CompensatedPoint>(module, "CompensatedPoints")
       .add("x_mm", &CompensatedPoint::x_mm)
       .add("y_mm", &CompensatedPoint::y_mm)
@@ -102,7 +108,59 @@ void add_tables(py::module_& module) {
       .add("nz", &CompensatedPoint::nz)
       .add("before_um", &CompensatedPoint::before_um)
       .add("after_um", &CompensatedPoint::after_um)
-      .add("area_mm2", &CompensatedPoint::area_mm2);
+      .add("area_mm2", &CompensatedPoint::area_mm2)
+      .add_vectors("points", &CompensatedPoint::x_mm)
+      .add_vectors("normals", &CompensatedPoint::nx);
+  using camber::SpindleLoadRow;
+  TableClass<SpindleLoadRow>(module, "SpindleLoads")
+      .add("tool", &SpindleLoadRow::tool)
+      .add("line", &SpindleLoadRow::line)
+      .add("power_W", &SpindleLoadRow::power_W)
+      .add("torque_Nm", &SpindleLoadRow::torque_Nm);
+}
+
+/// (m, 3) of point indices, as matplotlib takes them.
+py::array triangles_of(const py::object& owner, const camber::Mesh& mesh) {
+  const auto& rows = mesh.triangles;
+  py::array_t<std::int64_t> view({rows.size(), std::size_t{3}}, {sizeof(camber::MeshTriangle), sizeof(std::int64_t)},
+                                 rows.empty() ? nullptr : &rows.front().a, owner);
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
+/// The same flat, each with its number of points before it, as PyVista takes them.
+py::array faces_of(const camber::Mesh& mesh) {
+  py::array_t<std::int64_t> out(static_cast<py::ssize_t>(4 * mesh.triangles.size()));
+  std::int64_t* at = out.mutable_data();
+  for (const auto& t : mesh.triangles)
+    for (const std::int64_t v : {std::int64_t{3}, t.a, t.b, t.c}) *at++ = v;
+  return out;
+}
+
+/// A mesh of a result; its arrays share the result's memory.
+struct MeshView {
+  py::object owner;
+  const camber::Mesh* mesh = nullptr;
+};
+
+void add_mesh(py::module_& module) {
+  using camber::MeshPoint;
+  py::class_<MeshView> view(module, "Mesh",
+                            "Triangles for PyVista (points, faces) and matplotlib (points, triangles).");
+  const auto add = [&](const char* name, auto field) {
+    view.def_property_readonly(name, [field](const MeshView& m) { return column(m.owner, m.mesh->points, field); });
+  };
+  view.def("__len__", [](const MeshView& m) { return m.mesh->points.size(); })
+      .def_property_readonly("points",
+                             [](const MeshView& m) { return vectors(m.owner, m.mesh->points, &MeshPoint::x_mm); })
+      .def_property_readonly("normals",
+                             [](const MeshView& m) { return vectors(m.owner, m.mesh->points, &MeshPoint::nx); })
+      .def_property_readonly("triangles", [](const MeshView& m) { return triangles_of(m.owner, *m.mesh); })
+      .def_property_readonly("faces", [](const MeshView& m) { return faces_of(*m.mesh); });
+  add("error_um", &MeshPoint::error_um);
+  add("deflection_um", &MeshPoint::deflection_um);
+  add("contour_um", &MeshPoint::contour_um);
+  add("block", &MeshPoint::block);
 }
 
 void add_check(py::module_& module) {
@@ -223,7 +281,9 @@ void add_fit(py::module_& module) {
       .def_readonly("unit", &FitParameter::unit)
       .def_readonly("std_error", &FitParameter::std_error)
       .def_readonly("note", &FitParameter::note)
-      .def_readonly("written", &FitParameter::written);
+      .def_readonly("written", &FitParameter::written)
+      .def_readonly("stretches", &FitParameter::stretches)
+      .def_readonly("changed_from", &FitParameter::changed_from);
   result_class<FitFeedResult>(module, "FitFeedResult")
       .def_readonly("machine", &FitFeedResult::machine)
       .def_readonly("parameters", &FitFeedResult::parameters)
@@ -265,6 +325,12 @@ void add_predict_and_compensate(py::module_& module) {
   add_table(predict, "forces", &PredictResult::forces);
   add_table(predict, "form_error", &PredictResult::form_error);
   add_table(predict, "feed", &PredictResult::feed);
+  add_table(predict, "spindle_load", &PredictResult::spindle_load);
+  for (const auto& [name, mesh] :
+       {std::pair{"error_mesh", &PredictResult::error_mesh}, {"machined_mesh", &PredictResult::machined_mesh}})
+    predict.def_property_readonly(name, [mesh = mesh](const py::object& self) {
+      return MeshView{self, &(self.cast<const PredictResult&>().*mesh)};
+    });
   py::class_<CompensationRound>(module, "CompensationRound")
       .def_readonly("error_um", &CompensationRound::error_um)
       .def_readonly("largest_shift_mm", &CompensationRound::largest_shift_mm)
@@ -351,6 +417,7 @@ void add_adapt(py::module_& module) {
 
 void add_results(py::module_& module) {
   add_tables(module);
+  add_mesh(module);
   add_check(module);
   add_explain_kinematics(module);
   add_study(module);

@@ -54,6 +54,9 @@ struct SurfacePoint {
   double area_mm2 = 0;               ///< of the target's surface represented by the point
   std::int32_t target_stamp = -1;    ///< stamp of the target sweep that generated it
   std::int32_t machined_stamp = -1;  ///< stamp that last cut the machined field there; -1: none
+  /// Of contour_mm: what the axes' lag and the control's path tolerance do by themselves (simulate/contour.h).
+  float lag_mm = 0, path_tolerance_mm = 0;
+  bool valid = true;  ///< false: left where the model does not hold (simulate/validity.h); in no figure
 };
 
 /// Points where grid lines cross the target's surface, in a fixed order. A crossing along axis a represents the area

@@ -39,8 +39,22 @@ Json plain(const compensate::PlainFigures& p) {
 
 Json causes(const compensate::CompensationResult& c) {
   Json out = Json::array();
-  for (const auto& cause : c.causes)
-    out.push_back({{"rms_um", cause.rms_um}, {"lines", cause.lines}, {"sentence", compensate::sentence(cause)}});
+  for (const auto& cause : c.causes) {
+    std::vector<std::size_t> given, emitted;
+    for (const auto& line : cause.lines) given.push_back(line.given), emitted.push_back(line.emitted);
+    out.push_back({{"rms_um", cause.rms_um},
+                   {"lines", given},
+                   {"emitted_lines", emitted},
+                   {"remedies", cause.remedies},
+                   {"sentence", compensate::sentence(cause)}});
+  }
+  return out;
+}
+
+Json limits(const compensate::CompensationResult& c) {
+  Json out = Json::array();
+  for (const auto& limit : c.limits)
+    out.push_back({{"key", limit.key}, {"value", limit.value}, {"binds_no_more_at", limit.binds_no_more_at}});
   return out;
 }
 
@@ -49,11 +63,13 @@ Json verdict(const VerdictText& v) {
 }
 
 Json depth(const compensate::Depth& d) {
-  return {{"deepest_um", d.deepest_um},
-          {"gouge_depth_p999_um", d.gouge_depth_p999_um},
-          {"held_um", d.gouge_depth_p999_um},  // former name, for one more release
-          {"at_mm", {d.place_mm.x(), d.place_mm.y(), d.place_mm.z()}},
-          {"area_over_tolerance", d.over_fraction}};
+  Json j = {{"deepest_um", d.deepest_um},
+            {"gouge_depth_p999_um", d.gouge_depth_p999_um},
+            {"held_um", d.gouge_depth_p999_um},  // former name, for one more release
+            {"at_mm", {d.place_mm.x(), d.place_mm.y(), d.place_mm.z()}},
+            {"area_over_tolerance", d.over_fraction}};
+  if (d.line.given > 0) j["line"] = d.line.given, j["emitted_line"] = d.line.emitted;
+  return j;
 }
 
 Json rounds(const compensate::CompensationResult& c) {
@@ -154,6 +170,7 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["not_judged_mm2"] = c.not_judged_mm2;
   j["stage_between"] = c.between;
   j["causes"] = causes(c);
+  j["binding_limits"] = limits(c);
   j["verdict"] = verdict(verdict_text(c, asked));
   j["split_before_um"] = split(c.split_before);
   j["split_after_um"] = split(c.split_after);
@@ -363,6 +380,7 @@ std::string compensate_text(const compensate::CompensationResult& c, double comp
                  c.feed_after.time_s, compute_s);
   const std::size_t limited = c.rounds[c.best].limited_points;
   if (limited > 0) fmt::format_to(std::back_inserter(out), "{} points of the path reached max_shift_mm\n", limited);
+  for (const auto& limit : c.limits) out += compensate::sentence(limit) + "\n";
   return out;
 }
 

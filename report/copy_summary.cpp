@@ -1,5 +1,9 @@
 #include "report/copy_summary.h"
 
+#include <algorithm>
+#include <functional>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "base/json.h"
@@ -10,6 +14,32 @@ namespace camber::report {
 using copymill::CopyResult;
 
 namespace {
+
+Json places_json(const copymill::LoadFigures& l) {
+  Json out = Json::array();
+  for (const copymill::OverTarget& p : l.places)
+    out.push_back({{"t_s", p.t_s},
+                   {"at_mm", {p.place_mm.x(), p.place_mm.y(), p.place_mm.z()}},
+                   {"force_N", p.force_N},
+                   {"passings", p.passings}});
+  return out;
+}
+
+/// The places with the greatest forces, in the program's order.
+std::string places_text(const copymill::LoadFigures& l) {
+  constexpr std::size_t kNamed = 5;
+  std::vector<copymill::OverTarget> worst = l.places;
+  std::ranges::stable_sort(worst, std::greater<>(), &copymill::OverTarget::force_N);
+  if (worst.size() > kNamed) worst.resize(kNamed);
+  std::ranges::stable_sort(worst, {}, &copymill::OverTarget::t_s);
+  std::string out = fmt::format("      more than {:.0f} % of the target in {} place{}, {}by time:\n",
+                                100 * copymill::LoadFigures::kOver, l.places.size(), l.places.size() == 1 ? "" : "s",
+                                l.places.size() > kNamed ? fmt::format("the worst {} ", kNamed) : "");
+  for (const copymill::OverTarget& p : worst)
+    out += fmt::format("        {:.0f} N at X{:.3f} Y{:.3f} Z{:.3f}, {:.2f} s, {} passings\n", p.force_N,
+                       p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.t_s, p.passings);
+  return out;
+}
 
 Json load_json(const copymill::LoadFigures& l) {
   return {{"target", l.target_N},
@@ -49,6 +79,7 @@ Json operations_json(const CopyResult& r) {
                    {"trochoid_circles", o.trochoid_circles},
                    {"nothing_left", o.nothing_left},
                    {"load", load_json(o.load)},
+                   {"over_target", places_json(o.load)},
                    {"changes", o.changes.size()}});
   return out;
 }
@@ -102,6 +133,7 @@ std::string copy_text(const CopyResult& r, double compute_s) {
           o.load.max_N, o.load.target_N,
           o.load.counted > 0 ? 100.0 * static_cast<double>(o.load.within) / static_cast<double>(o.load.counted) : 0.0,
           o.load.counted);
+    if (!o.load.places.empty()) out += places_text(o.load);
     if (o.trochoid_circles > 0)
       out += fmt::format("      {} trochoid circles instead of full cuts\n", o.trochoid_circles);
     if (o.nothing_left) out += "      nothing was left for this operation\n";

@@ -16,6 +16,7 @@ constexpr std::size_t kFlushBytes = 1 << 20;
 /// Loads of a row's teeth, taken together.
 struct Turn {
   std::size_t teeth = 0;
+  bool valid = true;
   StampLoad load;
 
   void add(const StampLoad& l) {
@@ -54,7 +55,8 @@ ForceRow row_of(const Stamp& first, std::size_t line, const Turn& turn, double r
           .power_W = simulate::power_W(l.torque_mean_Nmm / n, rpm),
           .chip_max_mm = l.chip_max_mm,
           .chip_mean_mm = l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0,
-          .specific_energy_MPa = l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0};
+          .specific_energy_MPa = l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0,
+          .valid = turn.valid};
 }
 
 void append_row(std::string& out, const ForceRow& r, bool axial) {
@@ -71,6 +73,7 @@ void append_row(std::string& out, const ForceRow& r, bool axial) {
   append_cells(out, 4, {r.power_W});
   append_cells(out, 6, {r.chip_max_mm, r.chip_mean_mm});
   append_cells(out, 2, {r.specific_energy_MPa});
+  append_cells(out, 0, {r.valid ? 1.0 : 0.0});
   if (axial) append_cells(out, 3, {r.axial_max_N});
   out.back() = '\n';
 }
@@ -89,10 +92,14 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
       Turn turn;
       std::size_t k = from;
       while (k < end && turn.teeth < flutes && program.moves.moves[stamps[k].move].block == move.block &&
-             (k == from || !stamps[k].first))
+             (k == from || !stamps[k].first)) {
+        turn.valid = turn.valid && prediction.validity.valid(k);
         turn.add(prediction.cut.loads[k++]);
+      }
       const double rpm = program.moves.state_of(move).spindle_speed_rpm;
-      take(row_of(stamps[from], move.block + 1, turn, rpm, static_cast<int>(flutes)));
+      ForceRow row = row_of(stamps[from], move.block + 1, turn, rpm, static_cast<int>(flutes));
+      row.tool = run.tool;
+      take(row);
       from = k;
     }
   }
@@ -105,7 +112,7 @@ void write_forces_csv(const std::string& path, const machine::Job& job, const si
   file.stream()
       << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
          "dx_um,dy_um,dz_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"
-         "specific_energy_MPa"
+         "specific_energy_MPa,valid"
       << (axial ? ",f_axial_max_N\n" : "\n");
   std::string text;
   for_each_force_row(job, program, prediction, [&](const ForceRow& row) {

@@ -55,7 +55,8 @@ void write_whole_numbers(std::ostream& out, std::string_view attributes, std::si
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points) {
   OutputFile file(path);
   const bool traced = points.count > 0 && std::isfinite(points.at(0).model_error_um);
-  std::string text = "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool";
+  std::string text =
+      "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid";
   text += traced ? ",model_error_um,difference_um\n" : "\n";
   for (std::size_t i = 0; i < points.count; ++i) {
     const FormErrorPoint p = points.at(i);
@@ -67,7 +68,7 @@ void write_form_error_csv(const std::string& path, const FormErrorPoints& points
     else
       text += ',';
     append_cells(text, 6, {p.area_mm2});
-    append_cells(text, 0, {static_cast<double>(p.block), static_cast<double>(p.tool)});
+    append_cells(text, 0, {static_cast<double>(p.block), static_cast<double>(p.tool), p.valid ? 1.0 : 0.0});
     if (traced) append_cells(text, 3, {p.model_error_um, p.error_um - p.model_error_um});
     text.back() = '\n';
     if (text.size() < kFlushBytes) continue;
@@ -108,6 +109,8 @@ void write_form_error_vtp(const std::string& path, const FormErrorPoints& points
                       [&](std::size_t i) { return points.at(i).block; });
   write_whole_numbers(out, R"(type="Int32" Name="tool")", points.count,
                       [&](std::size_t i) { return points.at(i).tool; });
+  write_whole_numbers(out, R"(type="Int32" Name="valid")", points.count,
+                      [&](std::size_t i) { return points.at(i).valid ? 1 : 0; });
   out << "</PointData>\n<Points>\n";
   write_vectors(out, R"(type="Float32" NumberOfComponents="3")", points, &FormErrorPoint::place_mm);
   // A vertex cell for each point.

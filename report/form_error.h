@@ -1,5 +1,6 @@
 #pragma once
 // form_error.csv and form_error.vtp: the error at every point of the machined surface.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,6 +13,7 @@ namespace camber::report {
 
 struct FormErrorPoint {
   Vec3 place_mm = Vec3::Zero();
+  Vec3 crossing_mm = Vec3::Zero();  ///< where a line of the voxels' grid crosses the surface; for meshes
   Vec3 normal = Vec3::UnitZ();
   double error_um = 0;    ///< machined minus nominal surface along the normal; positive: excess material
   double contour_um = 0;  ///< of it, what servo lag and corner rounding do to the target program
@@ -21,6 +23,7 @@ struct FormErrorPoint {
   double model_error_um = std::numeric_limits<double>::quiet_NaN();  ///< of a trace: the feed model's; NaN: no trace
   std::uint32_t block = 0;  ///< 1-based line that generated the surface here; 0: unknown
   int tool = 0;             ///< whose stamp made it; 0: unknown
+  bool valid = true;        ///< the model holds here
 };
 
 /// Points made as they are asked for: there are millions of them.
@@ -29,15 +32,18 @@ struct FormErrorPoints {
   std::function<FormErrorPoint(std::size_t)> at;
 };
 
-/// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool; every figure
-/// of the form error can be worked out from them again. total_error_um is empty where there is none. Of a trace
-/// model_error_um,difference_um follow: the feed model's error, and error_um minus that.
+/// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid; every
+/// figure of the form error can be worked out again from the rows whose `valid` is 1. total_error_um is empty where
+/// there is none. Of a trace model_error_um,difference_um follow: the feed model's error, and error_um minus that.
 /// Throws InputError [file-unwritable].
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points);
 
 /// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, deflection_um, contour_um, area_mm2,
-/// block, tool and, where there is one, total_error_um. Throws InputError [file-unwritable].
+/// block, tool, valid and, where there is one, total_error_um. Throws InputError [file-unwritable].
 void write_form_error_vtp(const std::string& path, const FormErrorPoints& points);
+
+/// Blue, white, red for -1, 0, 1.
+std::array<std::uint8_t, 3> error_colour(double fraction);
 
 /// The same points as binary PLY with colours: blue where the cutter went too deep, white at zero, red where material
 /// is left; full colour at `full_um` and beyond. Properties x y z nx ny nz red green blue error_um deflection_um

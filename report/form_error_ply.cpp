@@ -9,16 +9,12 @@
 #include "report/form_error.h"
 
 namespace camber::report {
-namespace {
 
-/// Blue, white, red for -1, 0, 1.
-std::array<std::uint8_t, 3> colour(double fraction) {
+std::array<std::uint8_t, 3> error_colour(double fraction) {
   const double s = std::clamp(fraction, -1.0, 1.0), faded = 1 - std::abs(s);
   const auto byte = [](double v) { return static_cast<std::uint8_t>(std::lround(255 * v)); };
   return s < 0 ? std::array{byte(faded), byte(faded), byte(1)} : std::array{byte(1), byte(faded), byte(faded)};
 }
-
-}  // namespace
 
 void write_form_error_ply(const std::string& path, const FormErrorPoints& points, double full_um) {
   OutputFile file(path);
@@ -41,7 +37,7 @@ void write_form_error_ply(const std::string& path, const FormErrorPoints& points
     const FormErrorPoint p = points.at(i);
     for (const Vec3& v : {p.place_mm, p.normal})
       for (int a = 0; a < 3; ++a) append_little_endian(bytes, static_cast<float>(v[a]));
-    for (const std::uint8_t c : colour(full_um > 0 ? p.error_um / full_um : 0)) bytes += static_cast<char>(c);
+    for (const std::uint8_t c : error_colour(full_um > 0 ? p.error_um / full_um : 0)) bytes += static_cast<char>(c);
     for (const double v : {p.error_um, p.deflection_um(), p.contour_um, p.area_mm2})
       append_little_endian(bytes, static_cast<float>(v));
     append_little_endian(bytes, p.block);

@@ -66,8 +66,8 @@ std::string head_html(const ReportData& data) {
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   out += kPagePolicy;
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out +=
-      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, report_style());
+  out += fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle,
+                     report_style());
   out += fmt::format("<header><div><h1>{}</h1>\n<p class=\"sub\">{}</p></div></header>\n", title,
                      html_text(data.subtitle));
   if (data.verdict) out += verdict_html(*data.verdict);

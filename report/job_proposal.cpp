@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <regex>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/numbers.h"
+#include "machine/machine_presets.h"
 #include "machine/material_presets.h"
+#include "machine/program_comments.h"
 #include "report/stock_proposal.h"
+#include "report/tool_guess.h"
 #include "simulate/memory.h"
 
 namespace camber::report {
@@ -74,41 +79,26 @@ const char* type_word(ToolType type) {
   return "general";
 }
 
-/// A number where it is known, else the key in a comment.
-std::string number_line(const char* key, const std::optional<double>& value, const std::string& what) {
-  return value ? line(fmt::format("{} = {}", key, decimal(*value)), "") : line(fmt::format("# {} =", key), what);
-}
-
-constexpr double kFaceMill_mm = 32;       // and wider
-constexpr double kOverhangDiameters = 4;  // typical
-constexpr double kClearOfCut_mm = 5;      // of the holder above the blank
-constexpr double kRootStiffness_N_per_um = 20, kHelix_deg = 30;
+constexpr double kRootStiffness_N_per_um = 20;
 constexpr double kRadialRatio = 0.4;
 
-int typical_flutes(const ToolProposal& tool) {
-  if (tool.type == ToolType::drill || tool.type == ToolType::ball) return 2;
-  return tool.diameter_mm.value_or(0) >= kFaceMill_mm ? 5 : 4;
+std::string assumed_line(const std::vector<std::string>& keys) {
+  return keys.empty() ? std::string()
+                      : line(fmt::format("assumed = [\"{}\"]", fmt::join(keys, "\", \"")),
+                             "results begin with these: take out what you have put in");
 }
 
-double typical_helix_deg(const ToolProposal& tool) {
-  const bool face_mill = tool.diameter_mm.value_or(0) >= kFaceMill_mm;
-  return face_mill || tool.type == ToolType::chamfer ? 0 : kHelix_deg;
-}
-
-/// Long enough for the flutes and for the deepest cut below the blank's top.
-double typical_overhang_mm(const ToolProposal& tool, double depth_mm) {
-  const double least = std::max(depth_mm, tool.flute_length_mm.value_or(0)) + kClearOfCut_mm;
-  return std::ceil(std::max(kOverhangDiameters * tool.diameter_mm.value_or(0), least));
+std::string number_line(const char* key, const std::optional<double>& value) {
+  return value ? fmt::format("{} = {}\n", key, decimal(*value)) : std::string();
 }
 
 std::string profile_text(const ToolProposal& tool) {
-  std::string out = number_line("diameter_mm", tool.diameter_mm, "");
-  if (tool.type == ToolType::bull) out += number_line("corner_radius_mm", tool.corner_radius_mm, "");
-  if (tool.type == ToolType::tapered_ball) out += line("# taper_deg =", "between the wall and the axis");
-  if (tool.point_angle_deg)
-    out += fmt::format("point_angle_deg = {}\n", decimal(*tool.point_angle_deg));
-  else if (tool.type == ToolType::chamfer)
-    out += line("point_angle_deg = 90.0", "typical: between opposite sides of the cone");
+  std::string out = number_line("diameter_mm", tool.diameter_mm);
+  if (tool.type == ToolType::bull) out += number_line("corner_radius_mm", tool.corner_radius_mm);
+  if (tool.type == ToolType::tapered_ball) out += number_line("taper_deg", tool.taper_deg);
+  if (tool.type == ToolType::chamfer || tool.type == ToolType::drill)
+    out += number_line("point_angle_deg", tool.point_angle_deg);
+  if (tool.type == ToolType::chamfer) out += number_line("tip_diameter_mm", tool.tip_diameter_mm);
   return out;
 }
 
@@ -126,31 +116,50 @@ void mill_with_drills(const nc::Interpretation& moves, ToolsByNumber& tools) {
 }
 
 /// depth_mm: of the tool's lowest cut below the blank's top.
-std::string tool_text(const nc::ToolUse& use, const ToolProposal& tool, double depth_mm) {
+std::string tool_text(const nc::ToolUse& use, const ToolProposal& known, const nc::Interpretation& moves,
+                      double depth_mm) {
+  GuessedTool guessed = guess_tool(known, use, moves, depth_mm);
+  const ToolProposal& tool = guessed.tool;
+  const auto note = [&](const char* key, const char* text) {
+    return std::ranges::find(guessed.assumed, key) != guessed.assumed.end() ? text : "";
+  };
   std::string out = fmt::format("\n[tool.{}]\n", use.tool);
   out += fmt::format("# Line {}: {} cutting moves, {:.0f} mm; feed {} mm/min, spindle {} rpm.\n", use.line,
                      use.cutting_moves, use.cutting_length_mm, range_text(use.feed_mm_per_min, 1),
                      range_text(use.spindle_speed_rpm, 0));
   if (!tool.from.empty()) out += fmt::format("# {}: {}\n", plain(tool.from), plain(tool.what));
   if (!tool.doubt.empty()) out += fmt::format("# CHECK: {}.\n", plain(tool.doubt));
-  out += tool.type ? line(fmt::format("type = \"{}\"", type_word(*tool.type)), "")
-                   : line("# type =", "\"ball\", \"flat\", \"bull\" ... (docs/cutters.md)");
-  out += profile_text(tool);
-  out += tool.flutes ? fmt::format("flutes = {}\n", *tool.flutes)
-                     : line(fmt::format("flutes = {}", typical_flutes(tool)), "typical: count them");
-  out += line(fmt::format("helix_deg = {}", decimal(typical_helix_deg(tool))), "typical: see the tool's data sheet");
-  out += tool.overhang_mm ? line(fmt::format("overhang_mm = {}", decimal(*tool.overhang_mm)),
-                                 "the library's body length; holder face to tip: measure it")
-                          : line(fmt::format("overhang_mm = {}", decimal(typical_overhang_mm(tool, depth_mm))),
-                                 "typical: holder face to tip; bending grows with its cube: measure it");
-  if (tool.flute_length_mm) out += fmt::format("flute_length_mm = {}\n", decimal(*tool.flute_length_mm));
-  if (tool.shank_diameter_mm) out += fmt::format("shank_diameter_mm = {}\n", decimal(*tool.shank_diameter_mm));
+  out += line(fmt::format("type = \"{}\"", type_word(*tool.type)), note("type", "CHECK: no comment names the tool"));
+  std::string profile = profile_text(tool);
+  if (!*note("diameter_mm", "x")) {
+    out += profile;
+  } else {
+    const std::size_t end = profile.find('\n');
+    out += line(profile.substr(0, end), "CHECK: no comment gives it; by the distance between passes, else 10") +
+           profile.substr(end + 1);
+  }
+  out += line(fmt::format("flutes = {}", *tool.flutes), note("flutes", "typical: count them"));
+  out += line(fmt::format("helix_deg = {}", decimal(guessed.helix_deg)), "typical: see the tool's data sheet");
+  out += line(fmt::format("overhang_mm = {}", decimal(*tool.overhang_mm)),
+              guessed.overhang_from_source ? "as the source has it; holder face to tip: measure it"
+                                           : "typical: holder face to tip; bending grows with its cube: measure it");
+  if (!*note("flute_length_mm", "x")) {
+    out += machine::body_toml(tool);
+  } else if (tool.flute_length_mm && *tool.flute_length_mm <= *tool.overhang_mm) {
+    out += line(fmt::format("flute_length_mm = {}", decimal(*tool.flute_length_mm)),
+                "typical: DIN 6527, or the depth of the cut");
+    if (tool.shank_diameter_mm)
+      out += line(fmt::format("shank_diameter_mm = {}", decimal(*tool.shank_diameter_mm)),
+                  note("shank_diameter_mm", "typical"));
+  }
   out += line("# effective_diameter_ratio = 0.8", "bending diameter of the fluted part / diameter");
   out += tool.youngs_modulus_GPa
              ? line(fmt::format("youngs_modulus_GPa = {}", decimal(*tool.youngs_modulus_GPa)), "by what it is made of")
              : line("# youngs_modulus_GPa = 600.0", "carbide; high-speed steel 210");
-  return out + line(fmt::format("root_stiffness_N_per_um = {}", decimal(kRootStiffness_N_per_um)),
-                    "typical of holder and spindle, lateral: measure it (docs/guide/measure-force.md)");
+  out += line(fmt::format("root_stiffness_N_per_um = {}", decimal(kRootStiffness_N_per_um)),
+              "typical of holder and spindle, lateral: measure it (docs/guide/measure-force.md)");
+  guessed.assumed.emplace_back("root_stiffness_N_per_um");
+  return out + assumed_line(guessed.assumed);
 }
 
 std::string extents_text(const nc::Extents& e) {
@@ -168,33 +177,89 @@ std::string box_text(const machine::Box& box) {
 }
 
 std::string stock_text(const nc::Summary& summary, const std::optional<StockProposal>& stock) {
-  if (!stock) return line("# box_mm =", "[[x, y, z], [x, y, z]]: corners of the blank");
-  std::string out = fmt::format(
-      "# Cutting moves of the tip: {} mm.\n# The blank is not known: this box holds what the cutters sweep, 2 mm wider "
-      "and 1 mm deeper.\n# Its top: {}.\n",
-      extents_text(summary.cutting), stock->top);
+  if (!stock) return line("# box_mm =", "[[x, y, z], [x, y, z]]: corners of the blank; no move of the program cuts");
+  std::string out = fmt::format("# Cutting moves of the tip: {} mm.\n", extents_text(summary.cutting));
+  if (!stock->told.empty())
+    return out + fmt::format("# {}\n", plain(stock->told)) +
+           (stock->placed.empty() ? "" : fmt::format("# Its place: {}.\n", stock->placed)) + box_text(stock->box) +
+           (stock->placed.empty() ? "" : assumed_line({"box_mm"}));
+  out += fmt::format(
+      "# The blank is not known: this box holds what the cutters sweep, 2 mm wider and 1 mm deeper.\n# Its top: {}.\n",
+      stock->top);
   if (stock->trimmed) out += "# Sides are taken back from where rapids go down beside the part.\n";
   if (stock->in_the_way)
     out += "# CHECK: rapids run through it, as through every box of this program; give the blank's true shape.\n";
   return out + box_text(stock->box) +
-         line("# allowance_mm = 0.2", "what the pass before has left, where it had the same path");
+         line("# allowance_mm = 0.2", "what the pass before has left, where it had the same path") +
+         assumed_line({"box_mm"});
 }
 
-std::string material_text(const std::string& chosen) {
-  std::string full, tangential;
-  for (const auto& preset : machine::material_presets()) {
-    std::string& names = preset.radial_known ? full : tangential;
-    names += (names.empty() ? "" : ", ") + std::string(preset.name);
+/// Steel, or aluminium where a tool cuts faster than steel is cut.
+std::string usual_material(const nc::Summary& summary, const ToolsByNumber& tools, std::string& why) {
+  constexpr double kFasterThanSteel_m_per_min = 400;
+  double fastest = 0;
+  for (const auto& use : summary.tools) {
+    const auto at = tools.find(use.tool);
+    if (use.cutting_moves == 0 || use.spindle_speed_rpm.empty() || at == tools.end() || !at->second.diameter_mm)
+      continue;
+    fastest = std::max(fastest, kPi * *at->second.diameter_mm * use.spindle_speed_rpm.max / 1000);
   }
-  std::string out = fmt::format(
-      "\n[material]\n# Measured on your tool: file = \"material.toml\" (camber fit-force). Or a preset to begin with:\n"
-      "# {};\n# of the tangential force alone, so with krc_ratio: {}.\n",
-      full, tangential);
-  const machine::MaterialPreset* preset = machine::find_preset(chosen);
-  out += preset ? line(fmt::format("preset = \"{}\"", preset->name), std::string(preset->what)) : "# preset =\n";
-  const bool active = preset && !preset->radial_known;
-  return out + line(fmt::format("{}krc_ratio = {}", active ? "" : "# ", kRadialRatio),
-                    "typical: radial over tangential force, 0.3 to 0.6");
+  if (fastest > kFasterThanSteel_m_per_min) {
+    why = fmt::format("no file names it; a cutting speed of {:.0f} m/min", fastest);
+    return "Al6082-T6";
+  }
+  why = "no file names it; the commonest";
+  return "C45";
+}
+
+std::string material_text(const std::string& chosen, const nc::Summary& summary, const ToolsByNumber& tools) {
+  std::string why;
+  const std::string name = chosen.empty() ? usual_material(summary, tools, why) : chosen;
+  const machine::MaterialMatch match = machine::find_material(name);
+  const machine::MaterialPreset& preset = *match.preset;
+  std::string out =
+      "\n[material]\n# Measured on your tool: file = \"material.toml\" (camber fit-force). Other names: "
+      "docs/materials.md.\n";
+  if (!why.empty()) out += fmt::format("# CHECK: {}. Or camber init --material NAME.\n", why);
+  if (!match.note.empty()) out += fmt::format("# CHECK: {}.\n", plain(match.note));
+  out += line(fmt::format("preset = {}", quoted(name)),
+              fmt::format("{}; within {:g} %", preset.what, preset.scatter_percent));
+  std::vector<std::string> assumed;
+  if (chosen.empty()) assumed.emplace_back("preset");
+  if (!preset.radial_known) {
+    out += line(fmt::format("krc_ratio = {}", kRadialRatio), "typical: radial over tangential force, 0.3 to 0.6");
+    assumed.emplace_back("krc_ratio");
+  }
+  return out + assumed_line(assumed);
+}
+
+/// A class of machines that can run the program.
+std::string usual_machine(const JobProposal& proposal) {
+  static const std::regex kRouter(
+      R"(VECTRIC|WINCNC|CAMASTER|GRBL|SHAPEOKO|CARBIDE|STOCKMIN|X-?CARVE|ONEFINITY|MACH ?[23]|EASEL|ESTLCAM|OPENBUILDS|LONGMILL)",
+      std::regex::icase);
+  if (proposal.summary.rotary > 0) return "five-axis-trunnion";
+  double rpm = 0, feed_mm_per_min = 0;
+  for (const auto& use : proposal.summary.tools) {
+    if (!use.spindle_speed_rpm.empty()) rpm = std::max(rpm, use.spindle_speed_rpm.max);
+    if (!use.feed_mm_per_min.empty()) feed_mm_per_min = std::max(feed_mm_per_min, use.feed_mm_per_min.max);
+  }
+  constexpr double kRouter_rpm = 30000, kRouter_mm_per_min = 5000, kVmc_rpm = 12000, kVmc_mm_per_min = 18000,
+                   kLinear_rpm = 20000;
+  const auto comments = machine::commented_lines(proposal.text.source);
+  const bool router =
+      std::ranges::any_of(comments, [&](const auto& c) { return std::regex_search(c.comment, kRouter); });
+  if (router && rpm <= kRouter_rpm && feed_mm_per_min <= kRouter_mm_per_min) return "router";
+  if (rpm <= kVmc_rpm && feed_mm_per_min <= kVmc_mm_per_min) return "vmc-40";
+  return rpm <= kLinear_rpm ? "vmc-linear" : "hsc-die-mould";
+}
+
+std::string machine_text(const JobProposal& proposal) {
+  const std::string name =
+      proposal.machine.empty() ? std::string(machine::kPresetPrefix) + usual_machine(proposal) : proposal.machine;
+  const std::string setting = fmt::format("machine = {}", quoted(name));
+  return machine::is_preset(name) ? line(setting, "typical values of a class; yours: docs/guide/machine-file.md")
+                                  : setting + "\n";
 }
 
 /// The finest voxel of the list whose fields stay small for this blank.
@@ -209,7 +274,9 @@ std::string simulation_text(const std::optional<StockProposal>& stock) {
     }
   std::string out = "\n[simulation]\n" + line(fmt::format("voxel_mm = {}", decimal(voxel)),
                                               "by the blank's size; for finishing half the allowance or less");
-  if (stock && stock->in_the_way) out += line("collisions = \"warning\"", "until the blank is right");
+  if (stock && (stock->in_the_way || stock->told.empty()))
+    out += line("collisions = \"warning\"",
+                stock->told.empty() ? "until the blank is right" : "rapids run through the blank");
   return out;
 }
 
@@ -217,26 +284,27 @@ std::string simulation_text(const std::optional<StockProposal>& stock) {
 
 std::string job_text(const JobProposal& proposal) {
   std::string out = fmt::format(
-      "# A job for camber, begun by camber init. What stands as \"# key =\" is not known: fill it in. What is marked\n"
-      "# \"typical\" is an assumption: put in your own value. A \"# key = value\" is the default.\n"
+      "# A job for camber, begun by camber init. It runs as it stands: what no file says is an assumption, marked\n"
+      "# \"typical\" or CHECK and listed in \"assumed\". A \"# key = value\" is the default.\n"
       "program = {}\n",
       quoted(proposal.program));
   if (proposal.inch) out += line(fmt::format("units = \"{}\"", *proposal.inch ? "inch" : "mm"), "of the program");
-  out += proposal.machine.empty() ? line("# machine =", "\"machine.toml\": camber protocol and fit-feed measure one")
-                                  : fmt::format("machine = {}\n", quoted(proposal.machine));
+  out += machine_text(proposal);
   ToolsByNumber by_number;
-  for (const auto& tool : proposal.tools) by_number.emplace(tool.number, tool);
+  for (const auto& tool : proposal.tools)
+    if (tool.number) by_number.emplace(*tool.number, tool);
   mill_with_drills(proposal.moves, by_number);
   const std::optional<StockProposal> stock = propose_stock(proposal.text, proposal.moves, by_number);
   std::string cutting, tools;
   for (const auto& use : proposal.summary.tools) {
     if (use.cutting_moves == 0) continue;
     const double top = stock ? stock->box.max_mm.z() : use.cutting.max_mm.z();
-    tools += tool_text(use, by_number[use.tool], top - use.cutting.min_mm.z());
+    tools += tool_text(use, by_number[use.tool], proposal.moves, std::max(0.0, top - use.cutting.min_mm.z()));
     cutting += (cutting.empty() ? "" : ", ") + std::to_string(use.tool);
   }
   out += line(fmt::format("# operations = {{ tools = [{}] }}", cutting), "only these are simulated and compensated");
-  out += tools + material_text(proposal.preset) + "\n[stock]\n" + stock_text(proposal.summary, stock);
+  out += tools + material_text(proposal.material, proposal.summary, by_number) + "\n[stock]\n" +
+         stock_text(proposal.summary, stock);
   out += simulation_text(stock) + "\n[compensation]\n";
   out += line("tolerance_um = 5.0", "95 % of the surface; or profile_um = [-5, 10], the band that the drawing gives");
   return out + "max_shift_mm = 0.1\n";

@@ -4,13 +4,15 @@
 #include "report/page_parts.h"
 
 // CAMBER_BUNDLE(NAME, FILE): the bytes of a file as NAME_begin to NAME_end.
-#define CAMBER_BUNDLE(name, file)                                                     \
-  asm(".section .rodata\n"                                                            \
-      ".hidden " #name "_begin\n.hidden " #name "_end\n"                              \
-      ".global " #name "_begin\n.global " #name "_end\n" #name "_begin:\n"            \
+#define CAMBER_BUNDLE(name, file)                                                        \
+  asm(".section .rodata\n"                                                               \
+      ".hidden " #name "_begin\n.hidden " #name                                          \
+      "_end\n"                                                                           \
+      ".global " #name "_begin\n.global " #name "_end\n" #name                           \
+      "_begin:\n"                                                                        \
       ".incbin \"" CAMBER_BUNDLE_DIR "/" file "\"\n" #name "_end:\n.byte 0\n.previous"); \
-  extern "C" {                                                                        \
-  extern const char name##_begin[], name##_end[];                                     \
+  extern "C" {                                                                           \
+  extern const char name##_begin[], name##_end[];                                        \
   }
 
 CAMBER_BUNDLE(camber_page_script, "main.js")
@@ -21,9 +23,7 @@ CAMBER_BUNDLE(camber_page_machine, "machine.js")
 namespace camber::report {
 namespace {
 
-std::string_view between(const char* begin, const char* end) {
-  return {begin, static_cast<std::size_t>(end - begin)};
-}
+std::string_view between(const char* begin, const char* end) { return {begin, static_cast<std::size_t>(end - begin)}; }
 
 }  // namespace
 

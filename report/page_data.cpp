@@ -23,7 +23,9 @@ double scale_um(const SurfaceSamples& samples, double SurfaceSample::*error) {
   if (samples.empty()) return 1;
   std::vector<double> size;
   size.reserve(samples.size());
-  for (const SurfaceSample& s : samples.all()) size.push_back(std::abs(s.*error));
+  for (const SurfaceSample& s : samples.all())
+    if (s.area_mm2 > 0) size.push_back(std::abs(s.*error));
+  if (size.empty()) return 1;
   const auto at = size.begin() + static_cast<std::ptrdiff_t>(kScaleFraction * static_cast<double>(size.size() - 1));
   std::nth_element(size.begin(), at, size.end());
   return nice_limit(*at);

@@ -153,8 +153,8 @@ std::string page_head(std::string_view page_title, std::string_view subtitle) {
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   out += kPagePolicy;
   out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  out +=
-      fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle, report_style());
+  out += fmt::format("<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n", title, kPageStyle,
+                     report_style());
   return out + fmt::format("<h1>{}</h1>\n<p class=\"sub\">{}</p>\n", title, html_text(subtitle));
 }
 

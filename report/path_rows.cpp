@@ -119,6 +119,16 @@ std::vector<PathRow> rows_of_program(const simulate::SimulatedProgram& program, 
   return collector.take();
 }
 
+std::vector<PathRow> rows_of_cut(std::vector<PathRow> rows, const removal::StampPath& path) {
+  if (path.stamps.empty()) return rows;
+  constexpr double kAround = 0.02, kLeast_s = 0.5;
+  double from_s = path.stamps.front().t_s, to_s = path.stamps.back().t_s;
+  const double around_s = std::max(kLeast_s, kAround * (to_s - from_s));
+  from_s -= around_s, to_s += around_s;
+  std::erase_if(rows, [&](const PathRow& row) { return row.t_s < from_s || row.t_s > to_s; });
+  return rows;
+}
+
 void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const StampLoad> loads) {
   if (loads.size() != path.stamps.size()) return;
   for_each_row_stamps(rows, path.stamps, [&](PathRow& row, std::size_t from, std::size_t to) {
@@ -134,7 +144,7 @@ void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,
                 std::span<const removal::SurfacePoint> surface) {
   std::vector<double> worst_um(path.stamps.size(), kNothingHere);
   for (const auto& p : surface)
-    if (p.machined_stamp >= 0 && static_cast<std::size_t>(p.machined_stamp) < worst_um.size())
+    if (p.valid && p.machined_stamp >= 0 && static_cast<std::size_t>(p.machined_stamp) < worst_um.size())
       raise_magnitude(worst_um[static_cast<std::size_t>(p.machined_stamp)], 1000 * p.error_mm);
   for_each_row_stamps(rows, path.stamps, [&](PathRow& row, std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k)

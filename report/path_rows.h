@@ -66,6 +66,9 @@ class PathCollector {
 std::vector<PathRow> rows_of_program(const simulate::SimulatedProgram& program, const machine::Machine& machine,
                                      const feedmodel::JointSampleSink& also = {});
 
+/// The rows from the first cut of `path` to its last one, with some of the way there and back; all where it has none.
+std::vector<PathRow> rows_of_cut(std::vector<PathRow> rows, const removal::StampPath& path);
+
 /// Gives each row the loads of the stamps from it to the next row (or, where there is none, of the last one, if the
 /// next is the following tooth passing). `loads`: one per stamp, or none.
 void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const simulate::StampLoad> loads);

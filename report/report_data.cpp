@@ -1,10 +1,12 @@
 #include "report/report_data.h"
+#include "machine/assumptions.h"
 #include "report/compensation_tables.h"
 
 #include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "report/model_tables.h"
 #include "report/page_tables.h"
@@ -29,7 +31,7 @@ SurfaceSample sample_of(const removal::SurfacePoint& p, const SimulatedProgram& 
           .normal = p.normal,
           .error_um = 1000 * p.error_mm,
           .contour_um = 1000 * p.contour_mm,
-          .area_mm2 = p.area_mm2,
+          .area_mm2 = p.valid ? p.area_mm2 : 0,
           .block = line_of(program, p.machined_stamp)};
 }
 
@@ -66,10 +68,18 @@ void add_parts(ReportData& data, const simulate::Prediction& p) {
   part("due to deflection, 95th percentile", p.deflection_um.p95, "deflection_um.p95");
   part("due to servo lag and corner rounding, rms", p.contour_um.rms, "contour_um.rms");
   part("due to servo lag and corner rounding, 95th percentile", p.contour_um.p95, "contour_um.p95");
+  if (!p.contour_parts_um) return;
+  part("of it due to servo lag, 95th percentile", p.contour_parts_um->lag_um.p95, "contour_parts_um.lag.p95");
+  part("of it due to the path tolerance, 95th percentile", p.contour_parts_um->path_tolerance_um.p95,
+       "contour_parts_um.path_tolerance.p95");
+  part("of it due to the corner law, 95th percentile", p.contour_parts_um->corner_law_um.p95,
+       "contour_parts_um.corner_law.p95");
 }
 
 void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& diagnostics,
                const std::string& unsettled) {
+  if (const auto assumed = machine::assumptions(job); !assumed.empty())
+    data.warnings.push_back(fmt::format("assumed, not given: {}", fmt::join(assumed, "; ")));
   for (const auto& d : diagnostics.all()) data.warnings.push_back(to_string(d));
   if (!unsettled.empty()) data.warnings.push_back(unsettled);
   data.notes.push_back(
@@ -82,6 +92,20 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
 void add_worst_lines(ReportData& data, const SimulatedProgram& program, bool after) {
   TextTable table = worst_lines_table(data.surface, program.text.source.text(), after);
   if (!table.rows.empty()) data.tables.insert(data.tables.begin(), std::move(table));
+}
+
+/// Where the job names operations, the path and the plots are of them.
+std::vector<PathRow> shown_rows(ReportData& data, const machine::Job& job, const SimulatedProgram& program,
+                                std::vector<PathRow> rows) {
+  if (!job.operations.given() || rows.empty()) return rows;
+  const double whole_s = rows.back().t_s;
+  rows = rows_of_cut(std::move(rows), program.path);
+  const std::string note =
+      rows.empty() ? std::string()
+                   : fmt::format("Path and plots show the operations of the job, {:.1f} to {:.1f} s of {:.1f} s.",
+                                 rows.front().t_s, rows.back().t_s, whole_s);
+  if (!note.empty() && std::ranges::find(data.notes, note) == data.notes.end()) data.notes.push_back(note);
+  return rows;
 }
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
@@ -161,10 +185,12 @@ FormErrorPoints form_error_points(const SimulatedProgram& program, const simulat
   return {prediction.surface.size(), [&program, &prediction, traced](std::size_t i) {
             const auto& p = prediction.surface[i];
             FormErrorPoint point{.place_mm = p.place_mm,
+                                 .crossing_mm = p.crossing_mm,
                                  .normal = p.normal,
                                  .error_um = 1000 * p.error_mm,
                                  .contour_um = 1000 * p.contour_mm,
                                  .area_mm2 = p.area_mm2};
+            point.valid = p.valid;
             if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
             if (traced) point.model_error_um = 1000 * traced->predicted.surface[i].error_mm;
             if (p.machined_stamp >= 0) {
@@ -188,18 +214,21 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   } else {
     add_figures(data, p.form_error_um, nullptr, "form_error_um");
     add_parts(data, p);
-    double force = 0;
-    for (const auto& l : p.cut.loads) force = std::max(force, l.lateral_max_N);
     // Shown large: two of the error, the force, the time.
-    data.figures.insert(data.figures.begin() + 2,
-                        {"maximum lateral force", force, std::nullopt, "N", 1, "force_N.max"});
-    data.figures.insert(data.figures.begin() + 3, time);
+    auto next = data.figures.begin() + 2;
+    if (!simulate::forces_beyond_model(p))
+      next = data.figures.insert(next,
+                                 {"maximum lateral force", largest_force_N(p), std::nullopt, "N", 1, "force_N.max"}) +
+             1;
+    data.figures.insert(next, time);
   }
-  data.figures.push_back({"removed, by the chips", p.cut.chip_mm3, std::nullopt, "mm3", 2, "removed_mm3.path"});
+  if (!simulate::forces_beyond_model(p))
+    data.figures.push_back({"removed, by the chips", chips_mm3(p), std::nullopt, "mm3", 2, "removed_mm3.path"});
   data.figures.push_back({"removed, by the stock", p.cut.stock_mm3, std::nullopt, "mm3", 2, "removed_mm3.stock"});
   data.surface = {p.surface.size(), [&](std::size_t i) { return sample_of(p.surface[i], program); }};
   data.voxel_mm = job.simulation.voxel_mm;
   add_stock(data, stock);
+  rows = shown_rows(data, job, program, std::move(rows));
   add_loads(rows, program.path, p.cut.loads);
   add_errors(rows, program.path, p.surface);
   if (turns(rows)) data.machine = machine_view(job, rows);
@@ -272,6 +301,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   add_stock(data, c.stock);
   add_shifts(after.rows, after.program.moves, shifted_from ? *shifted_from : before.program.moves);
   for (CompensatedRun* run : {&before, &after}) {
+    run->rows = shown_rows(data, job, run->program, std::move(run->rows));
     add_loads(run->rows, run->program.path, run->loads);
     add_errors(run->rows, run->program.path, run == &before ? c.surface_before : c.surface_after);
     if (!data.machine && turns(run->rows)) data.machine = machine_view(job, run->rows);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "machine/stock_comments.h"
 #include "nc/known_places.h"
 #include "nc/summary.h"
 
@@ -187,6 +188,7 @@ class Proposer {
   std::optional<StockProposal> run() {
     const nc::Extents swept = swept_box();
     if (swept.empty()) return std::nullopt;
+    if (auto told = told_box(swept)) return told;
     low_ = swept.min_mm - Vec3(kSide_mm, kSide_mm, kBelow_mm);
     high_ = swept.max_mm + Vec3(kSide_mm, kSide_mm, 0);
     StockProposal out;
@@ -202,6 +204,54 @@ class Proposer {
   }
 
  private:
+  /// The blank that a comment gives.
+  std::optional<StockProposal> told_box(const nc::Extents& swept) {
+    bool inch = false;
+    for (const nc::ModalState& state : moves_.states) inch = inch || state.inch;
+    const auto comment = machine::stock_in_comments(text_.source, inch);
+    if (!comment) return std::nullopt;
+    StockProposal out;
+    out.told = fmt::format("{}: ({})", comment->from, comment->what);
+    out.box = comment->box ? *comment->box : placed(*comment, out.placed);
+    const Vec3 low = out.box.min_mm.cwiseMax(swept.min_mm), high = out.box.max_mm.cwiseMin(swept.max_mm);
+    if (((high - low).array() <= 0).any()) return std::nullopt;
+    low_ = swept.min_mm - Vec3(kSide_mm, kSide_mm, kBelow_mm);
+    high_ = swept.max_mm + Vec3(kSide_mm, kSide_mm, 0);
+    Map map(low_, high_);
+    run_through(map);
+    const double top = out.box.max_mm.z();
+    const auto sums = map.removed_sums(top);
+    out.in_the_way = map.best(top, sums) != map.all();
+    return out;
+  }
+
+  /// Of a size: Z0 on top, or below where cuts lie above it; X0 Y0 in the middle, or in the corner, whichever holds the
+  /// path of the tips.
+  machine::Box placed(const machine::CommentedStock& stock, std::string& how) {
+    const Vec3& size = *stock.size_mm;
+    nc::Extents tips;
+    for (const nc::Move& m : moves_.moves)
+      if (is_cut(m)) {
+        const nc::Extents e = nc::extents_of(moves_, m);
+        tips.add(e.min_mm);
+        tips.add(e.max_mm);
+      }
+    const auto outside = [&](const Vec3& low) {
+      return (low - tips.min_mm).head<2>().cwiseMax(0.0).sum() +
+             (tips.max_mm - low - size).head<2>().cwiseMax(0.0).sum();
+    };
+    const Vec3 corner(0, 0, 0), middle(-size.x() / 2, -size.y() / 2, 0);
+    const bool centred = stock.zero_in_centre.value_or(outside(middle) < outside(corner));
+    const bool on_table = stock.zero_on_table.value_or(highest_pass_mm() > kTouch_mm);
+    if (!stock.zero_in_centre || !stock.zero_on_table)
+      how = fmt::format("X0 Y0 {}, Z0 {}, where it holds the path",
+                        centred ? "in the middle" : "in the lower left corner", on_table ? "on the table" : "on top");
+    machine::Box box{centred ? middle : corner, {}};
+    box.min_mm.z() = on_table ? 0 : -size.z();
+    box.max_mm = box.min_mm + size;
+    return box;
+  }
+
   const Profile& profile_of_move(const nc::Move& m) { return profiles_[moves_.state_of(m).tool]; }
 
   nc::Extents swept_box() {

@@ -17,9 +17,12 @@ struct StockProposal {
   std::string top;          ///< what its top face was chosen by
   bool trimmed = false;     ///< sides were taken back from rapids beside the part
   bool in_the_way = false;  ///< rapids run through it, and no smaller box of use is clear of them
+  std::string told{};       ///< the comment that gives it, with its line; empty: none, and the box is a guess
+  std::string placed{};     ///< how a blank of which only the size is told was placed; empty: its place is told too
 };
 
-/// A box around everything that the cutting moves sweep, 2 mm wider and 1 mm deeper.
+/// The box that a comment gives (machine/stock_comments.h), if it meets the cutting moves. Else:
+/// a box around everything that the cutting moves sweep, 2 mm wider and 1 mm deeper.
 ///
 /// Its top is Z0 where the program cuts below Z0 only, else 1 mm above the highest pass (feed moves as high as rapids
 /// travel are taken for moves in air); lower where a rapid runs lower over material that nothing has cut by then.

@@ -11,6 +11,7 @@
 
 #include "base/json.h"
 #include "report/figure_rows.h"
+#include "simulate/validity.h"
 #include "simulate/verdict.h"
 
 namespace camber::report {
@@ -20,6 +21,7 @@ namespace {
 removal::ErrorFigures total_error(const simulate::Prediction& p) {
   std::vector<double> um, area;
   for (std::size_t i = 0; i < p.total_error_mm.size(); ++i) {
+    if (!p.surface[i].valid) continue;
     um.push_back(1000 * p.total_error_mm[i]);
     area.push_back(p.surface[i].area_mm2);
   }
@@ -39,17 +41,12 @@ Json form_error(const simulate::Prediction& p) {
   Json j = figures_json(p.form_error_um);
   std::vector<double> um, area;
   for (const auto& point : p.surface) {
+    if (!point.valid) continue;
     um.push_back(1000 * point.error_mm);
     area.push_back(point.area_mm2);
   }
   j.update(spread(removal::error_spread(um, area)));
   return j;
-}
-
-double largest_force_N(const simulate::Prediction& p) {
-  double largest = 0;
-  for (const auto& l : p.cut.loads) largest = std::max(largest, l.lateral_max_N);
-  return largest;
 }
 
 /// Figures of the spindle and the chips over all tooth passings.
@@ -63,7 +60,7 @@ SpindleFigures spindle_figures(const simulate::SimulatedProgram& program, const 
   double work_Nmm = 0, volume_mm3 = 0, time_s = 0;
   for (std::size_t k = 0; k < p.cut.loads.size(); ++k) {
     const auto& l = p.cut.loads[k];
-    if (l.chip_mm3 <= 0 || l.torque_mean_Nmm <= 0) continue;
+    if (l.chip_mm3 <= 0 || l.torque_mean_Nmm <= 0 || !p.validity.valid(k)) continue;
     const double rpm = program.moves.state_of(program.moves.moves[program.path.stamps[k].move]).spindle_speed_rpm;
     const double power_W = simulate::power_W(l.torque_mean_Nmm, rpm);
     out.torque_max_Nm = std::max(out.torque_max_Nm, l.torque_max_Nmm / 1000);
@@ -103,22 +100,24 @@ std::string holes_text(const simulate::HoleFigures& h) {
 
 }  // namespace
 
+double chips_mm3(const simulate::Prediction& p) {
+  if (p.validity.all()) return p.cut.chip_mm3;
+  double sum = 0;
+  for (std::size_t k = 0; k < p.cut.loads.size(); ++k)
+    if (p.validity.valid(k)) sum += p.cut.loads[k].chip_mm3;
+  return sum;
+}
+
+double largest_force_N(const simulate::Prediction& p) {
+  double largest = 0;
+  for (std::size_t k = 0; k < p.cut.loads.size(); ++k)
+    if (p.validity.valid(k)) largest = std::max(largest, p.cut.loads[k].lateral_max_N);
+  return largest;
+}
+
 namespace {
 
 using Reason = deflection::NoEquilibrium;
-
-/// What keeps the tool from an equilibrium, before the lines in which it does.
-const char* condition(Reason reason) {
-  switch (reason) {
-    case Reason::pulled_in:
-      return "the tool is pulled into its cut (the force grows faster with the chip than the tool is stiff) in";
-    case Reason::pushed_out:
-      return "the tool is pushed out of its cut by more than 0.5 mm in";
-    case Reason::swings:
-      break;
-  }
-  return "the tool swings between two deflections in";
-}
 
 const char* name(Reason reason) {
   return reason == Reason::pulled_in ? "pulled in" : reason == Reason::pushed_out ? "pushed out" : "swings";
@@ -148,21 +147,32 @@ std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& progr
 
 namespace {
 
-/// Why there are no figures; those that there would be are null.
-void leave_out_figures(const simulate::SimulatedProgram& program, const simulate::Prediction& p, Json& j) {
-  j["force_N"]["max"] = nullptr;
-  j["torque_Nm"]["max"] = nullptr;
-  j["power_W"] = {{"max", nullptr}, {"mean", nullptr}};
-  j["chip_thickness_mm"]["max"] = nullptr;
-  j["specific_energy_MPa"] = nullptr;
-  for (const char* group : {"form_error_um", "total_error_um"})
-    if (j.contains(group))
-      j[group] = {{"min", nullptr}, {"max", nullptr}, {"mean", nullptr}, {"rms", nullptr}, {"p95", nullptr}};
-  j["beyond_model"] = {
-      {"slender_tools", p.slender_tools},
-      {"tooth_passings", p.cut.beyond},
-      {"lines", simulate::lines_beyond_model(program, p)},
-      {"deflection_um", {{"max", 1000 * p.cut.deflection_max_mm}, {"limit", 1000 * p.cut.deflection_limit_mm}}}};
+/// What the model does not cover; figures of which it covers less than half are null.
+void add_beyond_model(const simulate::SimulatedProgram& program, const simulate::Prediction& p, Json& j) {
+  const simulate::Validity& v = p.validity;
+  if (v.all()) return;
+  if (simulate::forces_beyond_model(p)) {
+    j["removed_mm3"]["path"] = nullptr;
+    j["force_N"]["max"] = nullptr;
+    j["torque_Nm"]["max"] = nullptr;
+    j["power_W"] = {{"max", nullptr}, {"mean", nullptr}};
+    j["chip_thickness_mm"]["max"] = nullptr;
+    j["specific_energy_MPa"] = nullptr;
+  }
+  if (simulate::beyond_model(p))
+    for (const char* group : {"form_error_um", "deflection_um", "total_error_um"})
+      if (j.contains(group))
+        j[group] = {{"min", nullptr}, {"max", nullptr}, {"mean", nullptr}, {"rms", nullptr}, {"p95", nullptr}};
+  std::vector<std::uint32_t> stamps = p.cut.beyond_stamps;
+  stamps.insert(stamps.end(), p.cut.unsettled_stamps.begin(), p.cut.unsettled_stamps.end());
+  j["beyond_model"] = {{"share", v.surface_fraction()},
+                       {"share_of_passings", v.passing_fraction()},
+                       {"area_mm2", v.invalid_mm2},
+                       {"tooth_passings", p.cut.beyond_stamps.size()},
+                       {"lines", simulate::lines_of(program, stamps)}};
+  if (!p.cut.beyond_stamps.empty())
+    j["beyond_model"]["deflection_um"] = {{"max", 1000 * p.cut.deflection_max_mm},
+                                          {"limit", 1000 * p.cut.deflection_limit_mm}};
 }
 
 }  // namespace
@@ -219,11 +229,15 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   j["power_W"] = {{"max", s.power_max_W}, {"mean", s.power_mean_W}};
   j["chip_thickness_mm"] = {{"max", s.chip_max_mm}};
   j["specific_energy_MPa"] = s.specific_energy_MPa;
-  j["removed_mm3"] = {{"path", p.cut.chip_mm3}, {"stock", p.cut.stock_mm3}};
+  j["removed_mm3"] = {{"path", chips_mm3(p)}, {"stock", p.cut.stock_mm3}};
   if (p.holes.any()) j["holes"] = holes(p.holes);
   j["form_error_um"] = form_error(p);
   j["deflection_um"] = figures_json(p.deflection_um);
   j["contour_um"] = figures_json(p.contour_um);
+  if (p.contour_parts_um)
+    j["contour_parts_um"] = {{"lag", figures_json(p.contour_parts_um->lag_um)},
+                             {"path_tolerance", figures_json(p.contour_parts_um->path_tolerance_um)},
+                             {"corner_law", figures_json(p.contour_parts_um->corner_law_um)}};
   j["unseen_mm2"] = p.unseen_mm2;
   j["border_mm2"] = p.border_mm2;
   j["not_judged_mm2"] = p.not_judged_mm2;
@@ -240,7 +254,7 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
       j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});
   if (traced) j["trace"] = traced_json(*traced);
   j["doubts"] = doubts;
-  if (simulate::beyond_model(p)) leave_out_figures(program, p, j);
+  add_beyond_model(program, p, j);
   return j.dump(2) + "\n";
 }
 
@@ -250,19 +264,35 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
                                 program.feed.cutting_time_s, compute_s);
   const SpindleFigures s = spindle_figures(program, p);
   const double balance = p.cut.stock_mm3 > 0 ? 100 * (p.cut.chip_mm3 / p.cut.stock_mm3 - 1) : 0;
-  fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %)\n",
-                 p.cut.chip_mm3, p.cut.stock_mm3, balance);
-  if (simulate::beyond_model(p)) return out + "force, deflection and form error: beyond the model's range\n";
-  fmt::format_to(std::back_inserter(out),
-                 "maximum lateral force {:.1f} N, torque {:.3f} Nm, chip thickness {:.4f} mm\n", largest_force_N(p),
-                 s.torque_max_Nm, s.chip_max_mm);
-  fmt::format_to(std::back_inserter(out), "power {:.1f} W maximum, {:.1f} W mean in the cut; {:.0f} J/cm3\n",
-                 s.power_max_W, s.power_mean_W, s.specific_energy_MPa);
+  if (p.validity.all())
+    fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %)\n",
+                   p.cut.chip_mm3, p.cut.stock_mm3, balance);
+  else
+    fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the stock\n", p.cut.stock_mm3);
+  const bool no_forces = simulate::forces_beyond_model(p), no_errors = simulate::beyond_model(p);
+  if (no_forces && no_errors) return out + "force, deflection and form error: beyond the model's range\n";
+  if (no_forces) {
+    out += "forces: beyond the model's range\n";
+  } else {
+    fmt::format_to(std::back_inserter(out),
+                   "maximum lateral force {:.1f} N, torque {:.3f} Nm, chip thickness {:.4f} mm\n", largest_force_N(p),
+                   s.torque_max_Nm, s.chip_max_mm);
+    fmt::format_to(std::back_inserter(out), "power {:.1f} W maximum, {:.1f} W mean in the cut; {:.0f} J/cm3\n",
+                   s.power_max_W, s.power_mean_W, s.specific_energy_MPa);
+  }
   if (p.holes.any()) out += holes_text(p.holes);
+  if (no_errors) return out + "deflection and form error: beyond the model's range\n";
   fmt::format_to(std::back_inserter(out), "{}\n{}\n{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um),
                  figures_row(" deflection", p.deflection_um), figures_row(" contour", p.contour_um));
+  if (p.contour_parts_um)
+    fmt::format_to(std::back_inserter(out), "{}\n{}\n{}\n", figures_row("  lag", p.contour_parts_um->lag_um),
+                   figures_row("  tolerance", p.contour_parts_um->path_tolerance_um),
+                   figures_row("  corners", p.contour_parts_um->corner_law_um));
   if (!p.total_error_mm.empty())
     fmt::format_to(std::back_inserter(out), "{}\n", figures_row("against part", total_error(p)));
+  if (p.validity.invalid_mm2 > 0)
+    fmt::format_to(std::back_inserter(out), "beyond the model, in no figure: {:.1f} of {:.1f} mm2\n",
+                   p.validity.invalid_mm2, p.validity.surface_mm2);
   if (traced) out += traced_text(*traced);
   return out + region_text({p.border_mm2, p.not_judged_mm2, p.between});
 }
@@ -283,7 +313,8 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
   std::string why;
   for (const auto reason : {Reason::pulled_in, Reason::pushed_out, Reason::swings}) {
     const std::vector<std::size_t> lines = unsettled_lines(program, p, reason);
-    if (!lines.empty()) why += fmt::format("{}{} {}", why.empty() ? "" : "; ", condition(reason), named(lines));
+    if (!lines.empty())
+      why += fmt::format("{}{} in {}", why.empty() ? "" : "; ", simulate::no_equilibrium_text(reason), named(lines));
   }
   return fmt::format(
       "the static deflection did not converge in {} stretch{} of the path: {}; figures from there on are uncertain",
@@ -292,13 +323,13 @@ std::string unsettled_sentence(const simulate::SimulatedProgram& program, const 
 
 namespace {
 
-std::string unsettled_sentence(bool settled) {
+std::string sentence_unless(bool settled) {
   return settled ? "" : "the static deflection of some stretches did not converge; their figures are uncertain";
 }
 
 }  // namespace
 
-std::string unsettled_sentence(const compensate::CompensationResult& c) { return unsettled_sentence(c.settled); }
-std::string unsettled_sentence(const compensate::Verification& v) { return unsettled_sentence(v.settled); }
+std::string unsettled_sentence(const compensate::CompensationResult& c) { return sentence_unless(c.settled); }
+std::string unsettled_sentence(const compensate::Verification& v) { return sentence_unless(v.settled); }
 
 }  // namespace camber::report

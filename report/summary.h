@@ -25,6 +25,11 @@ std::string verify_json(const compensate::Verification& verification, const mach
                         double compute_s);
 
 /// The same for a terminal, within 80 columns.
+/// Volume of the chips of the tooth passings that the model covers.
+double chips_mm3(const simulate::Prediction& prediction);
+/// Across the tool, of the tooth passings that the model covers.
+double largest_force_N(const simulate::Prediction& prediction);
+
 std::string predict_text(const simulate::SimulatedProgram& program, const simulate::Prediction& prediction,
                          double compute_s, const simulate::TracedRun* traced = nullptr);
 std::string compensate_text(const compensate::CompensationResult& result, double compute_s);

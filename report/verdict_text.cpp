@@ -39,8 +39,9 @@ std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
   const Vec3& at = depth.place_mm;
   return fmt::format(
       "the gouge depth is {:.2f} um (exceeded by 0.1 % of the surface), deepest ({:.2f} um) at X{:.3f} Y{:.3f} "
-      "Z{:.3f}; no more than {:.4g} um were expected",
-      depth.gouge_depth_p999_um, depth.deepest_um, at.x(), at.y(), at.z(), limit_um);
+      "Z{:.3f}{}; no more than {:.4g} um were expected",
+      depth.gouge_depth_p999_um, depth.deepest_um, at.x(), at.y(), at.z(),
+      depth.line.given > 0 ? " in " + compensate::lines_text({depth.line}) : "", limit_um);
 }
 
 std::vector<std::string> shortfalls(const CompensationResult& c, const CompensationSettings& asked) {

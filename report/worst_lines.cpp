@@ -40,7 +40,7 @@ TextTable worst_lines_table(const SurfaceSamples& surface, std::string_view prog
   double area_mm2 = 0;
   for (const SurfaceSample& s : surface.all()) {
     const std::uint32_t line = after ? s.block_after : s.block;
-    if (line == 0) continue;
+    if (line == 0 || s.area_mm2 <= 0) continue;
     const double error_um = after ? s.error_after_um : s.error_um;
     LineError& l = lines[line];
     l.area_mm2 += s.area_mm2;

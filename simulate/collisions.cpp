@@ -132,18 +132,29 @@ std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedP
   return upright ? find_upright_collisions(job, program, blank) : find_tilted_collisions(job, program, blank);
 }
 
-void check_collisions(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
-                      Diagnostics& diagnostics) {
+std::optional<Severity> collision_severity(const machine::Job& job, const SimulatedProgram& program) {
   const auto kind = job.simulation.collisions.value_or(motion_left_out(program) ? machine::Collisions::warning
                                                                                 : machine::Collisions::error);
-  if (kind == machine::Collisions::off) return;
-  const auto severity = kind == machine::Collisions::error ? Severity::error : Severity::warning;
+  if (kind == machine::Collisions::off) return std::nullopt;
+  return kind == machine::Collisions::error ? Severity::error : Severity::warning;
+}
+
+void report_collisions(const machine::Job& job, const SimulatedProgram& program, const std::vector<Collision>& found,
+                       Diagnostics& diagnostics) {
+  const std::optional<Severity> severity = collision_severity(job, program);
+  if (!severity) return;
   const machine::Operations operations = as_lines(job.operations, program.text, program.moves);
   std::vector<Collision> inside, outside;
-  for (const Collision& c : find_collisions(job, program, blank))
+  for (const Collision& c : found)
     (removal::in_operations(program.moves, program.moves.moves[c.move], operations) ? inside : outside).push_back(c);
-  report_inside(program, inside, severity, diagnostics);
-  report_outside(program, outside, severity, diagnostics);
+  report_inside(program, inside, *severity, diagnostics);
+  report_outside(program, outside, *severity, diagnostics);
+}
+
+void check_collisions(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                      Diagnostics& diagnostics) {
+  if (collision_severity(job, program))
+    report_collisions(job, program, find_collisions(job, program, blank), diagnostics);
 }
 
 }  // namespace camber::simulate

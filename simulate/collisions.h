@@ -41,5 +41,10 @@ std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedP
 /// the job's operations are one diagnostic, at the first.
 void check_collisions(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                       Diagnostics& diagnostics);
+/// Of collisions that are found already.
+void report_collisions(const machine::Job& job, const SimulatedProgram& program, const std::vector<Collision>& found,
+                       Diagnostics& diagnostics);
+/// The severity of the job; nothing where collisions are not looked for.
+std::optional<Severity> collision_severity(const machine::Job& job, const SimulatedProgram& program);
 
 }  // namespace camber::simulate

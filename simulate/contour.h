@@ -9,6 +9,15 @@ namespace camber::simulate {
 /// minus the nominal surface, along the nominal surface's normal at the points of Target::map.
 void mark_contour(const machine::Job& job, const removal::StampPath& path, Target& target);
 
+/// Takes the contour error apart by its causes, where its 95th percentile is kWorthParting_um or more and no rotary
+/// axis turns (Target::contour_parts). The machine is timed twice more:
+///
+///   lag             with an exact stop after every block and no merging: what the axes' lag and filters do to the path
+///   path tolerance  with axes that follow the plan: what blending and merging do (G64 P, corner tolerance_mm)
+///   corner law      the rest: corners that are passed without a stop, by axes that lag
+void part_contour(const machine::Job& job, const SimulatedProgram& program, Target& target);
+inline constexpr double kWorthParting_um = 1;
+
 /// Marks the stamps of a piece on a map.
 void mark_contour_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece,
                      removal::SurfaceMap& map);

@@ -300,10 +300,8 @@ class Cutter {
       loads[k].deflection_max_mm = deflection;
       result.deflection_max_mm = std::max(result.deflection_max_mm, deflection);
       if (deflection <= limit) continue;
-      result.deflection_limit_mm = result.beyond == 0 ? limit : std::min(result.deflection_limit_mm, limit);
-      ++result.beyond;
-      if (result.beyond_moves.empty() || result.beyond_moves.back() != stamps[k].move)
-        result.beyond_moves.push_back(stamps[k].move);
+      result.deflection_limit_mm = result.beyond_stamps.empty() ? limit : std::min(result.deflection_limit_mm, limit);
+      result.beyond_stamps.push_back(static_cast<std::uint32_t>(result.loads.size() + k));
     }
   }
 
@@ -365,8 +363,12 @@ class Cutter {
       cancellation_point();
       const Stamp& stamp = all[from + k];
       const auto passing = static_cut_->cut(k);
+      const auto stand = [&] {
+        if (!settled_) result.unsettled_stamps.push_back(static_cast<std::uint32_t>(result.loads.size() + k));
+      };
       if (passing.rounds == 0) {
         read[k] = 0;
+        stand();
         continue;
       }
       ++result.read;
@@ -387,6 +389,13 @@ class Cutter {
         }
       }
       settled_ = passing.settled;
+      stand();
+      if (!passing.settled && ++unsettled_readings_ >= options_.give_up_after &&
+          static_cast<double>(unsettled_readings_) > NoRest::kHopeless * static_cast<double>(result.read)) {
+        behind.wait();
+        throw NoRest{unsettled_readings_, result.read, result.unsettled_moves.front(),
+                     result.unsettled_reasons.front()};
+      }
     }
     behind.wait();
     fill_between(read, result.loads, loads);
@@ -440,7 +449,8 @@ class Cutter {
   std::size_t different_teeth_ = 1;               ///< of which each takes another chip
   std::optional<removal::RigidEngager> engager_;  ///< rigid
   std::optional<StaticCut> static_cut_;
-  bool settled_ = true;           ///< the last tooth passing
+  bool settled_ = true;  ///< the last tooth passing
+  std::size_t unsettled_readings_ = 0;
   DeflectionTable deflections_;   ///< of the stretch
   std::vector<float> last_rows_;  ///< of the deflection tables before, BendBefore::kRows at most
   double largest_bend_mm_ = 0;    ///< so far

@@ -1,6 +1,7 @@
 #pragma once
 // Cutting a path: chips, forces and deflections at every stamp, and the stock that the deflected cutter leaves.
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,7 +56,9 @@ struct CutOptions {
   double settle_fraction = 0.01;
   std::size_t longest_gap = deflection::ReadingPace::kLongest;  ///< see SettleOptions
   Vec3 axis_compliance_mm_per_N = Vec3::Zero();                 ///< of the machine's axes
-  bool drilling = false;                   ///< straight down: see simulate/holes.h; with rigid coupling
+  bool drilling = false;  ///< straight down: see simulate/holes.h; with rigid coupling
+  /// Static: NoRest is thrown after so many readings without an equilibrium, where they are kHopeless of all so far.
+  std::size_t give_up_after = std::numeric_limits<std::size_t>::max();
   std::function<void(double)> progress;    ///< completed fraction, 0 to 1
   const removal::Stock* blank = nullptr;   ///< copy of the uncut stock if available; saves a copy
   removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the deflected cutter, if given
@@ -83,13 +86,21 @@ struct CutResult {
   int rounds_max = 0;                             ///< of the static solution: readings of a tooth passing's chips
   std::size_t unsettled = 0;                      ///< stretches of tooth passings without a static equilibrium
   std::vector<std::uint32_t> unsettled_moves;     ///< their Stamp::move, without consecutive repetitions
+  std::vector<std::uint32_t> unsettled_stamps;    ///< all of their passings: indices of `loads`
   std::vector<deflection::NoEquilibrium> unsettled_reasons;  ///< of the first passing of each
-  std::size_t beyond = 0;                   ///< tooth passings with a deflection beyond the model's range
-  std::vector<std::uint32_t> beyond_moves;  ///< their Stamp::move, without consecutive repetitions
-  double deflection_max_mm = 0;             ///< of the edge at the tip, in any tooth passing
-  double deflection_limit_mm = 0;           ///< smallest limit among those exceeded
-  BendBefore bend;                          ///< static: at the end
-  deflection::TurnForces turn;              ///< empty without CutOptions::turn_from
+  std::vector<std::uint32_t> beyond_stamps;  ///< with a deflection beyond the model's range: indices of `loads`
+  double deflection_max_mm = 0;              ///< of the edge at the tip, in any tooth passing
+  double deflection_limit_mm = 0;            ///< smallest limit among those exceeded
+  BendBefore bend;                           ///< static: at the end
+  deflection::TurnForces turn;               ///< empty without CutOptions::turn_from
+};
+
+/// Thrown where a cut is given up: the tool comes to rest in hardly any tooth passing.
+struct NoRest {
+  static constexpr double kHopeless = 0.8;
+  std::size_t unsettled = 0, readings = 0;
+  std::uint32_t move = 0;  ///< Stamp::move of the first one
+  deflection::NoEquilibrium reason = deflection::NoEquilibrium::swings;
 };
 
 /// Cuts `stock`: with the deflected cutter, or in rigid coupling (no feedback of the deflection) with the undeflected

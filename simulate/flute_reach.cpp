@@ -258,6 +258,16 @@ class TiltedSearch {
 
 }  // namespace
 
+void report_above_flutes(const machine::Job& job, const SimulatedProgram& program,
+                         const std::vector<CutAboveFlutes>& found, Diagnostics& diagnostics) {
+  Report report(job, program, diagnostics);
+  for (const CutAboveFlutes& cut : found) {
+    const nc::Move& m = program.moves.moves[cut.move];
+    if (report.full()) return;
+    if (!report.has(m.block)) report.add(program.moves.state_of(m).tool, m.block, cut.above_tip_mm);
+  }
+}
+
 void check_flute_reach(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                        Diagnostics& diagnostics) {
   if (!removal::all_upright(program.path.stamps))

@@ -3,6 +3,7 @@
 #include "base/diagnostics.h"
 #include "machine/job.h"
 #include "removal/stock.h"
+#include "simulate/height_survey.h"
 #include "simulate/predict.h"
 
 namespace camber::simulate {
@@ -13,5 +14,8 @@ namespace camber::simulate {
 /// meets it nowhere, nothing is swept.
 void check_flute_reach(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                        Diagnostics& diagnostics);
+/// The same of cuts that are found already.
+void report_above_flutes(const machine::Job& job, const SimulatedProgram& program,
+                         const std::vector<CutAboveFlutes>& found, Diagnostics& diagnostics);
 
 }  // namespace camber::simulate

@@ -13,6 +13,7 @@
 #include "simulate/predict.h"
 #include "simulate/section_pieces.h"
 #include "simulate/setup.h"
+#include "simulate/setup_checks.h"
 
 namespace camber::simulate {
 
@@ -26,6 +27,14 @@ void time_path(SimulatedProgram& program, const machine::Job& job, const feedmod
 /// memory_factors() of a path of which some stamps are in memory.
 MemoryFactors memory_factors(const machine::Job& job, const nc::Program& text, const nc::Interpretation& moves,
                              const PathStretch& path, const StockSize& stock, const removal::Region* within);
+
+/// What a prediction of the program in this stock needs. Error [voxel-memory], as check_memory(). Requires a program
+/// that is timed.
+MemoryEstimate check_memory_of(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock,
+                               Diagnostics& diagnostics);
+
+/// Where the tools of a program go that cut, beside the job's stock.
+Places places_of(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock);
 
 /// The programs of a job.
 struct Programs {
@@ -88,11 +97,11 @@ CutResult cut_range(removal::Stock& stock, const machine::Tool& tool, const mach
                     const BendBefore* before = nullptr);
 
 /// Adds what a run, or a part of one, has given. In the order of the path.
-void add_piece(const machine::Job& job, const removal::ToolRun& run, CutResult piece, PathLoads& out);
+void add_piece(const removal::ToolRun& run, CutResult piece, PathLoads& out);
 
 /// The prediction from what a cut left: all points of Target::map with their errors, as SurfaceMap::take() returns
 /// them.
-Prediction judge(const Target& target, PathLoads loads, std::vector<removal::SurfacePoint> surface,
-                 std::unique_ptr<removal::Stock> machined);
+Prediction judge(const machine::Job& job, const Target& target, const SimulatedProgram& program, PathLoads loads,
+                 std::vector<removal::SurfacePoint> surface, std::unique_ptr<removal::Stock> machined);
 
 }  // namespace camber::simulate

@@ -24,6 +24,8 @@
 #include "simulate/section_programs.h"
 #include "simulate/setup_checks.h"
 #include "simulate/shared_prediction.h"
+#include "simulate/validity.h"
+#include "simulate/verdict.h"
 
 namespace camber::simulate {
 
@@ -64,14 +66,24 @@ double band_voxels(const Job& job, double thickest) {
   return std::clamp(std::ceil((thickest + kBending_mm) / job.simulation.voxel_mm) + 1, kMin, kMax);
 }
 
+MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock, double band,
+                               const TargetWork& work, Diagnostics& diagnostics) {
+  const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
+  return check_memory(
+      job, memory_factors(job, program.text, program.moves, path, {stock.min_mm, stock.max_mm, band}, work.within),
+      diagnostics);
+}
+
+double band_of(const Job& job, const SimulatedProgram& program, double min_chip_mm, const TargetWork& work) {
+  const double chip = work.path ? thickest_chip_mm(work.path->outline) : thickest_chip_mm(job, program.path);
+  return band_voxels(job, std::max(min_chip_mm, chip));
+}
+
 removal::Stock raw_stock(const Job& job, const SimulatedProgram& program, double min_chip_mm, MemoryEstimate& memory,
                          Diagnostics& diagnostics, const TargetWork& work) {
-  const double chip = work.path ? thickest_chip_mm(work.path->outline) : thickest_chip_mm(job, program.path);
-  const double band = band_voxels(job, std::max(min_chip_mm, chip));
-  const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
+  const double band = band_of(job, program, min_chip_mm, work);
   const auto require_memory = [&](const Vec3& lo, const Vec3& hi) {
-    memory = check_memory(job, memory_factors(job, program.text, program.moves, path, {lo, hi, band}, work.within),
-                          diagnostics);
+    memory = check_memory_of(job, program, {lo, hi}, band, work, diagnostics);
     diagnostics.throw_if_errors();
   };
   return job_stock(job, band, require_memory, work.within);
@@ -85,14 +97,15 @@ void for_each_run(const Job& job, const removal::StampPath& path, Function f) {
   }
 }
 
-/// Adds a run's deflections beyond the model's range.
+/// Adds the passings of a run that the model does not cover, before its loads are added.
 void add_range(const CutResult& run, CutResult& out) {
-  if (run.beyond > 0)
-    out.deflection_limit_mm =
-        out.beyond == 0 ? run.deflection_limit_mm : std::min(out.deflection_limit_mm, run.deflection_limit_mm);
-  out.beyond += run.beyond;
+  if (!run.beyond_stamps.empty())
+    out.deflection_limit_mm = out.beyond_stamps.empty() ? run.deflection_limit_mm
+                                                        : std::min(out.deflection_limit_mm, run.deflection_limit_mm);
   out.deflection_max_mm = std::max(out.deflection_max_mm, run.deflection_max_mm);
-  out.beyond_moves.insert(out.beyond_moves.end(), run.beyond_moves.begin(), run.beyond_moves.end());
+  const auto before = static_cast<std::uint32_t>(out.loads.size());
+  for (const std::uint32_t k : run.beyond_stamps) out.beyond_stamps.push_back(before + k);
+  for (const std::uint32_t k : run.unsettled_stamps) out.unsettled_stamps.push_back(before + k);
 }
 
 std::vector<Contact> contacts_of(const removal::Stock& target, const machine::Tool& tool,
@@ -196,13 +209,22 @@ void add_turned(const Job& job, const SimulatedProgram& program, Places& places)
     places.radius_mm = std::max(places.radius_mm, job.tools.at(tool).overhang_mm);
 }
 
-Places places_of(const Job& job, const SimulatedProgram& program, const removal::Stock& blank) {
-  Places out{tip_extents(program.moves, program.selected, program.holes), 0, {blank.min_mm(), blank.max_mm()}};
+}  // namespace
+
+MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock,
+                               Diagnostics& diagnostics) {
+  return check_memory_of(job, program, stock, band_of(job, program, 0, {}), {}, diagnostics);
+}
+
+Places places_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock) {
+  Places out{tip_extents(program.moves, program.selected, program.holes), 0, stock};
   for (const int tool : cutting_tools(program.moves, program.selected, program.holes))
     out.radius_mm = std::max(out.radius_mm, job.tools.at(tool).diameter_mm / 2);
   if (program.rotary) add_turned(job, program, out);
   return out;
 }
+
+namespace {
 
 /// The cutters of a nominal path.
 struct NominalCutters {
@@ -296,7 +318,7 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
   MemoryEstimate memory;
   removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics, work);
   blank.share();
-  Places places = places_of(job, target, blank);
+  Places places = places_of(job, target, {blank.min_mm(), blank.max_mm()});
   if (!removal::all_upright(target.path.stamps))  // a tilted tool reaches down past its tip
     places.tip.add(places.tip.min_mm - Vec3(0, 0, places.radius_mm));
   check_places(target.text.source.name(), places, diagnostics);
@@ -321,7 +343,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
 
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, const TargetWork& work) {
   auto [blank, whole, memory] = make_blank(job, target, diagnostics, 0, work);
-  const Places where = places_of(job, target, blank);
+  const Places where = places_of(job, target, {blank.min_mm(), blank.max_mm()});
   removal::Stock surface(blank);
   NominalCutters cutters;
   double removed_mm3 = 0;
@@ -352,6 +374,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     work.contour(out);
   else
     mark_contour(job, target.path, out);
+  if (work.judged && !work.within) part_contour(job, target, out);
   if (work.judged) mark_region(job, target, out.map->points(), out);
   out.memory = memory;
   return out;
@@ -405,6 +428,9 @@ CutResult cut_run_of(removal::Stock& stock, const Job& job, const removal::ToolR
   return tap(stock, tool, stamps, first_id, options);
 }
 
+/// Tooth passings without a static equilibrium: about half a minute of them.
+constexpr std::size_t kGiveUpAfter = 2000;
+
 /// Cuts every run of the path out of `stock`, which is `blank` before the first one.
 PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job& job, const SimulatedProgram& program,
                    PathCut how) {
@@ -423,24 +449,27 @@ PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job
       };
     if (how.turn_from && *how.turn_from >= from && *how.turn_from < from + stamps.size())
       options.turn_from = *how.turn_from - from;
-    CutResult cut_run = cut_run_of(stock, job, run, stamps, contacts, options);
+    options.give_up_after = kGiveUpAfter;
+    CutResult cut_run;
+    try {
+      cut_run = cut_run_of(stock, job, run, stamps, contacts, options);
+    } catch (const NoRest& given_up) {
+      throw BeyondModel(no_rest_sentence(program, given_up));
+    }
     if (how.chip_ratio > 0) cut_run.loads_at_ratio.resize(stamps.size());
-    add_piece(job, run, std::move(cut_run), out);
+    add_piece(run, std::move(cut_run), out);
   });
   return out;
 }
 
 }  // namespace
 
-void add_piece(const Job& job, const removal::ToolRun& run, CutResult piece, PathLoads& out) {
+void add_piece(const removal::ToolRun& run, CutResult piece, PathLoads& out) {
   const bool milling = run.kind == removal::RunKind::milling;
   if (!milling) add_holes(run.kind, piece, out.holes);
   add_figures(piece, run.kind, out.cut);
   append(std::move(piece.loads), out.cut.loads);
   if (!piece.loads_at_ratio.empty()) append(std::move(piece.loads_at_ratio), out.cut.loads_at_ratio);
-  if (milling && slenderness(job.tools.at(run.tool)) > kMaxSlenderness &&
-      !std::ranges::count(out.slender_tools, run.tool))
-    out.slender_tools.push_back(run.tool);
   if (!piece.turn.teeth.empty()) out.cut.turn = std::move(piece.turn);
 }
 
@@ -492,28 +521,51 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
                               .progress = options.progress,
                               .surface = &map,
                               .contacts = std::move(contacts_of_runs)});
-  return judge(target, std::move(loads), map.take(), std::move(machined));
+  return judge(job, target, program, std::move(loads), map.take(), std::move(machined));
 }
 
-Prediction judge(const Target& target, PathLoads loads, std::vector<removal::SurfacePoint> surface,
-                 std::unique_ptr<removal::Stock> machined) {
+namespace {
+
+Prediction::ContourFigures contour_figures(const std::vector<removal::SurfacePoint>& surface) {
+  std::vector<double> lag, tolerance, corner, area;
+  for (const removal::SurfacePoint& p : surface) {
+    if (!p.valid) continue;
+    lag.push_back(1000 * static_cast<double>(p.lag_mm));
+    tolerance.push_back(1000 * static_cast<double>(p.path_tolerance_mm));
+    corner.push_back(1000 * p.contour_mm - lag.back() - tolerance.back());
+    area.push_back(p.area_mm2);
+  }
+  return {removal::error_figures(lag, area), removal::error_figures(tolerance, area),
+          removal::error_figures(corner, area)};
+}
+
+}  // namespace
+
+Prediction judge(const Job& job, const Target& target, const SimulatedProgram& program, PathLoads loads,
+                 std::vector<removal::SurfacePoint> surface, std::unique_ptr<removal::Stock> machined) {
   Prediction out;
   out.machined = std::move(machined);
   out.cut = std::move(loads.cut);
   out.holes = loads.holes;
-  out.slender_tools = std::move(loads.slender_tools);
   out.surface = std::move(surface);
   for (std::size_t i = 0; i < out.surface.size(); ++i)
     out.surface[i].contour_mm = static_cast<double>(target.contour_mm[i]);
+  if (target.contour_parts)
+    for (std::size_t i = 0; i < out.surface.size(); ++i) {
+      out.surface[i].lag_mm = target.contour_parts->lag_mm[i];
+      out.surface[i].path_tolerance_mm = target.contour_parts->path_tolerance_mm[i];
+    }
   drop_left_out(target.region, out.surface);
   out.border_mm2 = target.region.border_mm2;
   out.not_judged_mm2 = target.region.not_judged_mm2;
   out.between = target.region.between;
   out.unseen_mm2 = target.unseen_mm2;
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
+  out.validity = find_validity(job, program, out.cut, out.surface);
   std::vector<double> error_um, deflection_um, contour_um, area;
   for (auto* values : {&error_um, &deflection_um, &contour_um, &area}) values->reserve(out.surface.size());
   for (const auto& p : out.surface) {
+    if (!p.valid) continue;
     error_um.push_back(1000 * p.error_mm);
     deflection_um.push_back(1000 * (p.error_mm - p.contour_mm));
     contour_um.push_back(1000 * p.contour_mm);
@@ -529,6 +581,8 @@ Prediction judge(const Target& target, PathLoads loads, std::vector<removal::Sur
   out.form_error_um = removal::error_figures(error_um, area);
   out.deflection_um = removal::error_figures(deflection_um, area);
   out.contour_um = removal::error_figures(contour_um, area);
+  if (target.contour_parts && out.contour_um.p95 >= kWorthParting_um)
+    out.contour_parts_um = contour_figures(out.surface);
   return out;
 }
 

@@ -72,20 +72,26 @@ struct SurfaceRegion {
   bool between = false;          ///< moves outside the job's operations cut deeper everywhere: nothing is excluded
 };
 
+/// Parts of the contour error by themselves (simulate/contour.h), as Target::contour_mm.
+struct ContourParts {
+  std::vector<float> lag_mm, path_tolerance_mm;
+};
+
 /// The nominal surface against which the part is judged: the undeflected sweep of the target program's own moves
 /// through the blank, without servo lag and corner rounding (removal::nominal_path).
 struct Target {
   removal::Stock blank;    ///< before this job's first cut
   removal::Stock surface;  ///< the nominal one
   std::optional<removal::PartMesh> part;
-  HoleStamps holes;                          ///< of the nominal path
-  std::optional<removal::Stock> whole{};     ///< the stock before the allowance was removed; empty: `blank`
-  std::vector<PathFraction> stamps{};        ///< the nominal path's, on the target program's moves
-  std::vector<float> contour_mm{};           ///< one per point of a SurfaceMap of this target; see Prediction::surface
-  double unseen_mm2 = 0;                     ///< area of the nominal surface without a point
-  MemoryEstimate memory{};                   ///< of a prediction
-  SurfaceRegion region{};                    ///< what of the nominal surface is judged
-  std::optional<removal::SurfaceMap> map{};  ///< points of the nominal surface, without marks
+  HoleStamps holes;                       ///< of the nominal path
+  std::optional<removal::Stock> whole{};  ///< the stock before the allowance was removed; empty: `blank`
+  std::vector<PathFraction> stamps{};     ///< the nominal path's, on the target program's moves
+  std::vector<float> contour_mm{};        ///< one per point of a SurfaceMap of this target; see Prediction::surface
+  std::optional<ContourParts> contour_parts{};  ///< not given: the contour error is small, or rotary axes turn
+  double unseen_mm2 = 0;                        ///< area of the nominal surface without a point
+  MemoryEstimate memory{};                      ///< of a prediction
+  SurfaceRegion region{};                       ///< what of the nominal surface is judged
+  std::optional<removal::SurfaceMap> map{};     ///< points of the nominal surface, without marks
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
@@ -112,6 +118,20 @@ Target make_target(const machine::Job& job, const SimulatedProgram& target, Diag
 double sweep_path(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path, double shrink_mm,
                   const std::string& what = "sweeping the path");
 
+/// Where the model holds (simulate/validity.h).
+struct Validity {
+  std::vector<bool> stamps{};                      ///< one per stamp: its loads are valid; empty: all are
+  double invalid_mm2 = 0, surface_mm2 = 0;         ///< of Prediction::surface
+  std::size_t invalid_passings = 0, passings = 0;  ///< of those that cut
+
+  bool all() const { return stamps.empty(); }
+  bool valid(std::size_t stamp) const { return stamps.empty() || stamps[stamp]; }
+  double surface_fraction() const { return surface_mm2 > 0 ? invalid_mm2 / surface_mm2 : passing_fraction(); }
+  double passing_fraction() const {
+    return passings > 0 ? static_cast<double>(invalid_passings) / static_cast<double>(passings) : 0;
+  }
+};
+
 struct Prediction {
   CutResult cut;  ///< loads: one per stamp of the program; the volumes are without tapping, which has no chips
   HoleFigures holes;
@@ -127,8 +147,12 @@ struct Prediction {
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
   std::unique_ptr<removal::Stock> machined;
-  std::vector<int>
-      slender_tools{};  ///< tools that cut and are more slender than the model covers (simulate/setup_checks.h)
+  Validity validity{};  ///< figures are of what is valid
+  /// Of contour_um, where it was taken apart (Target::contour_parts); the rest is the corner law's.
+  struct ContourFigures {
+    removal::ErrorFigures lag_um, path_tolerance_um, corner_law_um;
+  };
+  std::optional<ContourFigures> contour_parts_um{};
 };
 
 /// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).
@@ -157,7 +181,6 @@ struct LoadOptions {
 struct PathLoads {
   CutResult cut;
   HoleFigures holes;
-  std::vector<int> slender_tools{};  ///< see Prediction
 };
 PathLoads predict_loads(const machine::Job& job, const removal::Stock& blank, const SimulatedProgram& program,
                         const LoadOptions& options);

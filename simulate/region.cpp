@@ -192,6 +192,14 @@ bool stands_in(const removal::Stock& stock, const machine::Tool& tool, const Too
 
 void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                         Diagnostics& diagnostics) {
+  check_region_start(
+      job, program, [&](const machine::Tool& tool, const ToolPose& pose) { return stands_in(blank, tool, pose); },
+      diagnostics);
+}
+
+void check_region_start(const machine::Job& job, const SimulatedProgram& program,
+                        const std::function<bool(const machine::Tool&, const ToolPose&)>& in_material,
+                        Diagnostics& diagnostics) {
   const auto& moves = program.moves.moves;
   const auto first = static_cast<std::size_t>(std::ranges::find(program.selected, true) - program.selected.begin());
   if (first == 0 || first >= moves.size()) return;
@@ -204,7 +212,7 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
   const auto holes_end = program.holes.begin() + static_cast<std::ptrdiff_t>(std::min(first, program.holes.size()));
   if (!cut && std::any_of(program.holes.begin(), holes_end, removal::makes_hole)) return;
   if (!known || tool == job.tools.end() ||
-      !stands_in(blank, tool->second, program.pose_at(static_cast<std::uint32_t>(first), 0)))
+      !in_material(tool->second, program.pose_at(static_cast<std::uint32_t>(first), 0)))
     return;
   diagnostics.add(program.text.source.diagnostic(
       Severity::warning, program.text.blocks[m.block].offset,

@@ -1,5 +1,6 @@
 #pragma once
 // The region of a job with operations: the part of its nominal surface that is a surface of the part.
+#include <functional>
 #include <span>
 
 #include "removal/form_error.h"
@@ -29,6 +30,10 @@ void mark_region(const machine::Job& job, const SimulatedProgram& program,
 /// out and its cutter stands in the blank there by more than a voxel: the material within the cutter is removed without
 /// chips.
 void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
+                        Diagnostics& diagnostics);
+/// The same, where it is known whether the cutter stands in material there.
+void check_region_start(const machine::Job& job, const SimulatedProgram& program,
+                        const std::function<bool(const machine::Tool&, const ToolPose&)>& stands_in,
                         Diagnostics& diagnostics);
 
 /// Leaves the points of a map out that are not of the region; `surface` is in the map's order.

@@ -34,20 +34,21 @@ std::vector<StockPart> parts_within(const std::vector<StockPart>& parts, const R
 /// What is not a list.
 struct CutFigures {
   double chip_mm3, stock_mm3, deflection_max_mm, deflection_limit_mm, extrapolation_sum2_um2, extrapolation_max_um;
-  std::uint64_t read, unsettled, beyond, extrapolations;
+  std::uint64_t read, unsettled, extrapolations;
   std::int64_t rounds_max;
 };
 
 void write_cut(ByteWriter& out, const CutResult& cut) {
   out.value(CutFigures{cut.chip_mm3, cut.stock_mm3, cut.deflection_max_mm, cut.deflection_limit_mm,
-                       cut.extrapolation.sum2_um2, cut.extrapolation.max_um, cut.read, cut.unsettled, cut.beyond,
+                       cut.extrapolation.sum2_um2, cut.extrapolation.max_um, cut.read, cut.unsettled,
                        cut.extrapolation.count, cut.rounds_max});
   out.list(cut.loads);
   out.list(cut.bend.rows);
   out.value(cut.bend.largest_mm);
   out.list(cut.unsettled_moves);
   out.list(cut.unsettled_reasons);
-  out.list(cut.beyond_moves);
+  out.list(cut.unsettled_stamps);
+  out.list(cut.beyond_stamps);
   out.value(static_cast<std::uint64_t>(cut.turn.teeth.size()));
   for (const auto& tooth : cut.turn.teeth) out.list(tooth);
 }
@@ -58,14 +59,15 @@ CutResult read_cut(ByteReader& in) {
   out.chip_mm3 = f.chip_mm3, out.stock_mm3 = f.stock_mm3;
   out.deflection_max_mm = f.deflection_max_mm, out.deflection_limit_mm = f.deflection_limit_mm;
   out.extrapolation = {f.extrapolations, f.extrapolation_sum2_um2, f.extrapolation_max_um};
-  out.read = f.read, out.unsettled = f.unsettled, out.beyond = f.beyond;
+  out.read = f.read, out.unsettled = f.unsettled;
   out.rounds_max = static_cast<int>(f.rounds_max);
   out.loads = in.list<StampLoad>();
   out.bend.rows = in.list<float>();
   out.bend.largest_mm = in.value<double>();
   out.unsettled_moves = in.list<std::uint32_t>();
   out.unsettled_reasons = in.list<deflection::NoEquilibrium>();
-  out.beyond_moves = in.list<std::uint32_t>();
+  out.unsettled_stamps = in.list<std::uint32_t>();
+  out.beyond_stamps = in.list<std::uint32_t>();
   out.turn.teeth.resize(read_count(in));
   for (auto& tooth : out.turn.teeth) tooth = in.list<deflection::TurnForces::Tooth>();
   return out;

@@ -443,10 +443,10 @@ Prediction merge_sections(const Job& job, const Target& target, removal::Surface
   solved([&](SolvedSection& section) {
     if (is_static) join_stock(section.stock);
     join(section.marks, surface);
-    for (CutResult& cut : section.cuts) add_piece(job, program.path.runs[pieces[p++].run], std::move(cut), loads);
+    for (CutResult& cut : section.cuts) add_piece(program.path.runs[pieces[p++].run], std::move(cut), loads);
     section = {};
   });
-  return judge(target, std::move(loads), std::move(surface), std::move(machined));
+  return judge(job, target, program, std::move(loads), std::move(surface), std::move(machined));
 }
 
 }  // namespace camber::simulate

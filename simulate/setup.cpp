@@ -1,10 +1,13 @@
 #include "simulate/setup.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "simulate/collision_search.h"
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
-#include "simulate/machine_checks.h"
+#include "simulate/height_survey.h"
 #include "simulate/machine_collisions.h"
 #include "simulate/pieces.h"
 #include "simulate/region.h"
@@ -14,10 +17,10 @@ namespace camber::simulate {
 
 Programs read_programs(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings) {
   const bool other = !options.program.empty();
-  SimulatedProgram program =
-      simulate_motion(SourceText::read(other ? options.program : job.program), job, {}, findings.program);
+  SimulatedProgram program = read_moves(SourceText::read(other ? options.program : job.program), job, findings.program);
   if (options.check) options.check(program);
   findings.program.throw_if_errors();
+  time_path(program, job, {});
   machine::Job of_target = job;
   if (job.part.operations) of_target.operations = *job.part.operations;
   std::optional<SimulatedProgram> original;
@@ -45,18 +48,62 @@ Programs taken_from(ReadPrograms& read, const SetupOptions& options, const Setup
 Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings,
              const TargetWork& work, ReadPrograms* read) {
   Programs programs = read ? taken_from(*read, options, findings) : read_programs(job, options, findings);
+  const bool cleared =
+      options.clearance &&
+      check_heights(job, programs.program, programs.original ? &*programs.original : nullptr, findings.target);
+  findings.target.throw_if_errors();
   Target target = make_target(job, programs.of_target(), findings.target, work);
-  return {std::move(programs.program), std::move(programs.original), std::move(target)};
+  return {std::move(programs.program), std::move(programs.original), std::move(target), cleared};
 }
 
-void check_program(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
-  check_machine(job.machine, program.text, program.text_moves(), diagnostics);
-  check_tool_lengths(job, cutting_tools(program.moves, program.selected, program.holes), diagnostics);
+namespace {
+
+/// When the tool is there: of a move's stamps the first one.
+void set_times(const SimulatedProgram& program, std::vector<Collision>& found) {
+  const auto& stamps = program.path.stamps;
+  const std::vector<RapidCheck> rapids = rapids_of(program);
+  for (Collision& c : found) {
+    if (c.rapid) {
+      const auto rapid = std::ranges::find(rapids, c.move, &RapidCheck::move);
+      if (rapid != rapids.end()) c.t_s = rapid->t_s;
+      continue;
+    }
+    const auto stamp = std::ranges::lower_bound(stamps, c.move, {}, &removal::Stamp::move);
+    if (stamp != stamps.end()) c.t_s = stamp->t_s;
+  }
+}
+
+/// Less than this is what a survey may be wrong by.
+double nothing_mm3(const HeightSurvey& survey) { return std::pow(survey.cell_mm, 3); }
+
+}  // namespace
+
+bool check_heights(const machine::Job& job, const SimulatedProgram& program, const SimulatedProgram* original,
+                   Diagnostics& diagnostics) {
+  const std::optional<machine::Box> stock = stock_box(job);
+  if (!stock) return false;
+  constexpr double kVisits = 3e9;
+  const double cell = quick_cell_mm(job, program, *stock, job.simulation.voxel_mm, kVisits);
+  std::optional<HeightSurvey> survey = survey_heights(
+      job, program, {.cell_mm = cell, .tolerance_mm = std::max(cell, job.simulation.voxel_mm), .target = original});
+  if (!survey) return false;
+  if (job.stock.allowance_mm > 0 && survey->allowance_mm3 < nothing_mm3(*survey)) report_allowance(job, diagnostics);
+  diagnostics.throw_if_errors();
+  if (!original && survey->removed_mm3 < nothing_mm3(*survey))
+    report_nothing_removed(program.text.source.name(), places_of(job, program, *stock), diagnostics);
+  diagnostics.throw_if_errors();
+  set_times(program, survey->collisions);
+  report_collisions(job, program, survey->collisions, diagnostics);
+  check_region_start(
+      job, program, [&](const machine::Tool&, const ToolPose&) { return survey->starts_in_material; }, diagnostics);
+  report_above_flutes(job, program, survey->above_flutes, diagnostics);
+  return true;
 }
 
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics) {
-  check_collisions(job, setup.program, setup.target.blank, diagnostics);
   check_machine_collisions(job, setup.program.text, setup.program.text_moves(), diagnostics);
+  if (setup.cleared) return;
+  check_collisions(job, setup.program, setup.target.blank, diagnostics);
   check_region_start(job, setup.program, setup.target.blank, diagnostics);
   check_flute_reach(job, setup.program, setup.target.blank, diagnostics);
 }

@@ -20,6 +20,8 @@ struct Setup {
   Target target;
 
   const SimulatedProgram& target_program() const { return original ? *original : program; }
+  bool cleared = false;  ///< see SetupOptions::clearance
+
   bool own_target() const { return !original; }
   /// Target::stamps where they are of `program`, else none.
   std::span<const PathFraction> own_stamps() const {
@@ -30,7 +32,10 @@ struct Setup {
 struct SetupOptions {
   std::string program{};  ///< file; empty: the job's. Whatever it is, the target is the job's
   /// What the command asks of the program before the long work; errors that it adds to SetupFindings::program end it.
+  /// The program's path is empty.
   std::function<void(const SimulatedProgram&)> check{};
+  /// Looks at clearance before anything is swept, where check_heights() can.
+  bool clearance = false;
 };
 
 /// Where diagnostics go; may be one and the same.
@@ -43,8 +48,12 @@ struct SetupFindings {
 /// The target is [part] program where the job names one, else the job's program. Throws InputError.
 Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings);
 
-/// Whether the machine can run the program (machine_checks.h), and [tool-slender].
-void check_program(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics);
+/// What check_clearance() says, but for the machine's bodies, and whether anything is cut at all ([nothing-removed],
+/// [allowance-too-large]), from a height map of the stock (height_survey.h). False where no height map describes the
+/// job; nothing is said then. Requires a program that is timed. `original`: what the part is judged against, where it
+/// is another program.
+bool check_heights(const machine::Job& job, const SimulatedProgram& program, const SimulatedProgram* original,
+                   Diagnostics& diagnostics);
 
 /// Collisions (collisions.h, machine_collisions.h), a region that begins in material (region.h), material above the
 /// flutes (flute_reach.h).

@@ -79,7 +79,12 @@ std::string factor_text(const Places& p) {
   return "; moves through the stock were expected";
 }
 
-/// Nothing for a field that another job has left: its box is known once it is read.
+void add(Severity severity, const std::string& file, std::string message, const char* check, Diagnostics& diagnostics) {
+  diagnostics.add({severity, {file, 0, 0}, std::move(message), check, {}});
+}
+
+}  // namespace
+
 std::optional<machine::Box> stock_box(const machine::Job& job) {
   if (job.stock.box) return job.stock.box;
   if (!job.stock.mesh.empty()) return stl_box(job.stock.mesh);
@@ -88,12 +93,6 @@ std::optional<machine::Box> stock_box(const machine::Job& job) {
   const double r = c.diameter_mm / 2;
   return machine::Box{c.base_mm - Vec3(r, r, 0), c.base_mm + Vec3(r, r, c.height_mm)};
 }
-
-void add(Severity severity, const std::string& file, std::string message, const char* check, Diagnostics& diagnostics) {
-  diagnostics.add({severity, {file, 0, 0}, std::move(message), check, {}});
-}
-
-}  // namespace
 
 machine::Box stl_box(const std::string& path) {
   const TriangleMesh mesh = read_mesh(path);
@@ -177,18 +176,6 @@ double slenderness(const machine::Tool& tool) {
   return out;
 }
 
-void check_tool_lengths(const machine::Job& job, const std::vector<int>& tools, Diagnostics& diagnostics) {
-  for (const int number : tools) {
-    const auto tool = job.tools.find(number);
-    if (tool == job.tools.end() || slenderness(tool->second) <= kMaxSlenderness) continue;
-    add(Severity::warning, job.path,
-        fmt::format("T{}: overhang_mm = {:g} is {:.1f} times its diameter; the model covers up to {:g} times, so its "
-                    "figures are not shown",
-                    number, tool->second.overhang_mm, slenderness(tool->second), kMaxSlenderness),
-        "tool-slender", diagnostics);
-  }
-}
-
 void check_job(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
                Diagnostics& diagnostics) {
   const machine::Operations operations = as_lines(job.operations, program, moves);
@@ -198,7 +185,6 @@ void check_job(const machine::Job& job, const nc::Program& program, const nc::In
     if (holes[i] != removal::HoleMove::none) selected[i] = false;
   check_cutting(job, program, moves, selected, holes, diagnostics);
   const std::vector<int> tools = cutting_tools(moves, selected, holes);
-  check_tool_lengths(job, tools, diagnostics);
   const auto stock = stock_box(job);
   // Where rotary axes turn, moves say little of where the tool is: prepare() looks with its poses.
   if (!stock || feedmodel::has_rotary_motion(moves, job.machine)) return;

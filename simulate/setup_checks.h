@@ -1,6 +1,7 @@
 #pragma once
 // Set-up checks: consistency of stock, part, tools and program before the simulation, and whether anything is cut at
 // all.
+#include <optional>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -46,11 +47,11 @@ double slenderness(const machine::Tool& tool);
 /// A static beam does not describe longer tools.
 constexpr double kMaxSlenderness = 15;
 
-/// Warnings [tool-slender] for tools of the list that are more slender than kMaxSlenderness.
-void check_tool_lengths(const machine::Job& job, const std::vector<int>& tools, Diagnostics& diagnostics);
+/// Of the job's stock; nothing for a .vdb, whose box is known once it is read. Throws InputError.
+std::optional<machine::Box> stock_box(const machine::Job& job);
 
-/// What camber check asks of a program before any of it is simulated: [tool-missing] and the like (job_checks.h), tools
-/// that are too slender, and whether program, stock and part lie together.
+/// What camber check asks of a program before any of it is simulated: [tool-missing] and the like (job_checks.h), and
+/// whether program, stock and part lie together.
 void check_job(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
                Diagnostics& diagnostics);
 

@@ -24,12 +24,14 @@ Prediction predict_traced(const machine::Job& job, Target& target, SimulatedProg
   run.predicted.machined.reset();
   exchange(program, run.model);
   mark_contour(job, program.path, target);
+  target.contour_parts.reset();  // of the feed model
   PredictOptions measured_options = options;
   measured_options.progress = half(0.5);
   Prediction measured = predict(job, target, program, measured_options);
   assert(measured.surface.size() == run.predicted.surface.size());
   std::vector<double> difference_um, area;
   for (std::size_t i = 0; i < measured.surface.size(); ++i) {
+    if (!measured.surface[i].valid || !run.predicted.surface[i].valid) continue;
     difference_um.push_back(1000 * difference_mm(run, measured, i));
     area.push_back(measured.surface[i].area_mm2);
   }

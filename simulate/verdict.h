@@ -13,11 +13,16 @@ constexpr double kMaxImbalance = 0.03;
 /// Volume of the chips over the stock's change, less 1; 0 where next to nothing (a thousand voxels) is removed.
 double imbalance(double chip_mm3, double stock_mm3, double voxel_mm);
 
-/// True if a tool or a deflection is beyond the model: forces and errors must not be reported.
+/// True if the model covers less than half of the surface (of a program that leaves none, of the passings): errors must
+/// not be reported.
 bool beyond_model(const Prediction& prediction);
+/// True if it covers less than half of the tooth passings: forces must not be reported.
+bool forces_beyond_model(const Prediction& prediction);
 
-/// Lines in which a deflection is beyond the model's range, ascending.
-std::vector<std::size_t> lines_beyond_model(const SimulatedProgram& program, const Prediction& prediction);
+/// What keeps the tool from an equilibrium: "the tool is pulled into its cut (...)".
+const char* no_equilibrium_text(deflection::NoEquilibrium reason);
+/// Of a cut that was given up, with its line.
+std::string no_rest_sentence(const SimulatedProgram& program, const NoRest& given_up);
 
 /// One sentence for each reason why the figures are not reliable: beyond the model, chips against stock, no
 /// surface that could be judged. Empty: none.

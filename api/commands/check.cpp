@@ -5,11 +5,15 @@
 #include "api/commands/predict.h"
 #include "api/commands/rotary_program.h"
 #include "base/json.h"
+#include "checks/plausibility.h"
 #include "feedmodel/control_options.h"
+#include "feedmodel/fitted_range.h"
 #include "kinematics/reference_check.h"
 #include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
 #include "simulate/machine_checks.h"
+#include "simulate/machine_collisions.h"
+#include "simulate/pieces.h"
 #include "simulate/setup_checks.h"
 
 namespace camber::api {
@@ -63,6 +67,32 @@ bool is_to_cut(const nc::Interpretation& moves) {
   });
 }
 
+/// As predict's prepare() up to its sweeps: a height map tells of clearance in seconds. Where none describes the job,
+/// all of it.
+double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
+  const auto check = [&](const simulate::SimulatedProgram& program) {
+    checks::check_program(job, program, diagnostics);
+  };
+  const std::optional<machine::Box> stock = simulate::stock_box(job);
+  if (stock) {
+    Diagnostics of_original;
+    const simulate::Programs programs = simulate::read_programs(
+        job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics});
+    const double bytes = simulate::check_memory_of(job, programs.of_target(), *stock, diagnostics).total();
+    diagnostics.throw_if_errors();
+    const simulate::SimulatedProgram& program = programs.program;
+    if (simulate::check_heights(job, program, programs.original ? &*programs.original : nullptr, diagnostics)) {
+      feedmodel::check_range(program.text_moves(), job.program, job.machine, diagnostics);
+      simulate::check_machine_collisions(job, program.text, program.text_moves(), diagnostics);
+      return bytes;
+    }
+  }
+  Diagnostics of_rest;
+  const double bytes = prepare(job, {}, of_rest).setup.target.memory.total();
+  diagnostics = of_rest;
+  return bytes;
+}
+
 /// What predict would say of the job before its cut, as far as it is not said yet. Returns the memory that it needs.
 std::optional<double> add_what_predict_says(machine::Job job, const std::string& program, Diagnostics& found) {
   job.program = program;
@@ -70,7 +100,7 @@ std::optional<double> add_what_predict_says(machine::Job job, const std::string&
   std::vector<Diagnostic> said;
   std::optional<double> memory_bytes;
   try {
-    memory_bytes = prepare(job, {}, of_predict).setup.target.memory.total();
+    memory_bytes = memory_where_ready(job, of_predict);
     said = of_predict.all();
   } catch (const InputError& refused) {
     said = refused.diagnostics();

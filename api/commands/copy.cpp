@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "checks/plausibility.h"
 #include "machine/unprogrammed_job.h"
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
@@ -12,6 +13,7 @@ namespace camber::api {
 CopyJob read_copy_job(const std::string& path, Diagnostics& diagnostics) {
   CopyJob out{machine::read_unprogrammed_job(path, diagnostics), {}};
   out.operations = machine::read_copy_operations(path, out.job, diagnostics);
+  checks::check_job_values(out.job, diagnostics);
   diagnostics.throw_if_errors();
   return out;
 }

@@ -1,6 +1,7 @@
 #include "api/commands/fit_feed.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -11,7 +12,10 @@
 #include "calib/column_map.h"
 #include "calib/fit_drive.h"
 #include "calib/machine_log.h"
+#include "calib/place_trace.h"
+#include "calib/trace_check.h"
 #include "feedmodel/control_options.h"
+#include "feedmodel/joint_map.h"
 
 namespace camber::api {
 namespace {
@@ -35,13 +39,29 @@ calib::StretchRun& stretch_run(FeedRuns& runs, const std::string& name, const nc
   return runs.stretches.back();
 }
 
+/// Samples of a position log in a piece whose ends are known to a fraction of one.
+constexpr double kPieceSamples = 30;
+
+/// By the lines that a log names; where it names none, or too few, by its positions.
+std::vector<calib::TimedStretch> log_times(const calib::MachineLog& log, const nc::Interpretation& program) {
+  auto timed = calib::logged_stretches(log, calib::feed_stretches(program));
+  if (!timed.empty() || !calib::has_positions(log)) return timed;
+  const calib::ServoTrace trace = calib::position_trace(log);
+  const auto placed = trace.size() > 1 ? calib::place_on_path(trace, program) : std::nullopt;
+  if (!placed)
+    fail_on_file(log.path,
+                 "the positions do not follow the path of the program; a log of this program was expected, in mm",
+                 "trace-program");
+  return calib::placed_stretches(trace, program, *placed, kPieceSamples * trace.period_s,
+                                 [&](double from_s, double to_s) { return calib::steady_override(log, from_s, to_s); });
+}
+
 void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, Diagnostics& diagnostics) {
-  const auto timed =
-      kind == TraceKind::machine_log
-          ? calib::logged_stretches(calib::read_machine_log(path, diagnostics), calib::feed_stretches(run.program))
-          : calib::read_stretch_table(path, run.program);
+  const auto timed = kind == TraceKind::machine_log ? log_times(calib::read_machine_log(path, diagnostics), run.program)
+                                                    : calib::read_stretch_table(path, run.program);
   if (timed.empty())
-    fail_on_file(path, "has no complete stretch of feed moves of the program at 100 % override", "log-stretches");
+    fail_on_file(path, "has no stretch of feed moves of the program at a constant override and without a feed hold",
+                 "log-stretches");
   run.timed.insert(run.timed.end(), timed.begin(), timed.end());
 }
 
@@ -56,6 +76,42 @@ nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine&
     return moves;
   };
   return read(traced.text ? *traced.text : nc::read_program(SourceText::read(traced.program), diagnostics));
+}
+
+/// A servo trace with its lines, where it names them or the path tells them; a position log, the samples of which are
+/// too few to show ramps, gives times of pieces.
+void add_trace(FeedRuns& runs, const std::string& name, nc::Interpretation moves, calib::ServoTrace trace,
+               const machine::Machine& start, Diagnostics& diagnostics) {
+  constexpr double kDenseS = 0.0105;  // samples further apart show no ramps
+  const bool sparse = trace.period_s > kDenseS;
+  const std::array<bool, 3> all{true, true, true};
+  const bool placeable =
+      (trace.has_actual == all || trace.has_command == all) && !feedmodel::has_rotary_motion(moves, start);
+  std::optional<calib::PlacedTrace> placed;
+  if (placeable && (trace.line.empty() || sparse)) {
+    placed = calib::place_on_path(trace, moves);
+    if (!placed)
+      fail_on_file(
+          trace.path,
+          fmt::format("the positions do not follow the path of {}; a trace of this program was expected, in mm "
+                      "and in its work offset (scale and offset of --columns)",
+                      name),
+          "trace-program");
+    if (!sparse) calib::set_lines(trace, moves, *placed);
+  }
+  runs.servo.push_back({name, std::move(moves), std::move(trace)});
+  const calib::FeedRun& run = runs.servo.back();
+  calib::check_trace(run, start, diagnostics);
+  if (!placed || !sparse) return;
+  const auto timed = calib::placed_stretches(run.trace, run.program, *placed, kPieceSamples * run.trace.period_s);
+  if (timed.empty())
+    fail_on_file(run.trace.path,
+                 fmt::format("holds no piece of feed motion of {:.3g} s, which samples {:.3g} s apart need",
+                             kPieceSamples * run.trace.period_s, run.trace.period_s),
+                 "log-stretches");
+  calib::StretchRun& stretches = stretch_run(runs, name, run.program);
+  stretches.timed.insert(stretches.timed.end(), timed.begin(), timed.end());
+  runs.servo.pop_back();
 }
 
 /// JSON has no infinity.
@@ -76,6 +132,8 @@ Json parameters_json(const std::vector<calib::FitParameter>& parameters) {
                     {"unit", p.unit},
                     {"std_error", p.std_error ? number(*p.std_error) : Json(nullptr)},
                     {"written", p.written},
+                    {"stretches", p.stretches},
+                    {"changed_from", p.changed_from ? number(*p.changed_from) : Json(nullptr)},
                     {"note", p.note}});
   return list;
 }
@@ -120,6 +178,8 @@ Json report_of(const FitFeedResult& result) {
   Json report;
   report["parameters"] = parameters_json(result.parameters);
   report["held_out"] = error_json(result.held_out);
+  if (result.promise)
+    report["held_out"]["next_program_time_percent"] = {result.promise->low_percent, result.promise->high_percent};
   report["fitted"] = error_json(result.fitted);
   for (int i = 0; i < 3; ++i)
     report["drives"].push_back({{"axis", std::string(1, "xyz"[i])},
@@ -181,7 +241,7 @@ FeedRuns read_runs(std::span<const TracedProgram> traced, const std::string& col
     if (kind == TraceKind::servo) {
       auto trace =
           map ? calib::read_mapped_trace(one.trace, *map, diagnostics) : calib::read_trace(one.trace, diagnostics);
-      runs.servo.push_back({one.program, std::move(moves), std::move(trace)});
+      add_trace(runs, one.program, std::move(moves), std::move(trace), start, diagnostics);
     } else {
       add_times(stretch_run(runs, one.program, moves), one.trace, kind, diagnostics);
     }
@@ -189,8 +249,8 @@ FeedRuns read_runs(std::span<const TracedProgram> traced, const std::string& col
   return runs;
 }
 
-FeedFit fit_runs(const FeedRuns& runs, const machine::Machine& start) {
-  if (runs.stretches.empty() || runs.any_lines()) return calib::fit_feed(runs.servo, runs.stretches, start, {});
+FeedFit fit_runs(const FeedRuns& runs, const machine::Machine& start, const calib::FitFeedOptions& options) {
+  if (runs.stretches.empty() || runs.any_lines()) return calib::fit_feed(runs.servo, runs.stretches, start, options);
   calib::StretchFit fit = calib::fit_stretches(runs.stretches, start, {});
   std::vector<const calib::ServoTrace*> traces;
   for (const calib::FeedRun& run : runs.servo) traces.push_back(&run.trace);

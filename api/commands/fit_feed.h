@@ -38,7 +38,7 @@ FeedRuns read_runs(std::span<const TracedProgram> traced, const std::string& col
 using FeedFit = std::variant<calib::FitFeedResult, calib::StretchFit>;
 
 /// Drives come from the servo traces without lines, where some are given beside times of stretches.
-FeedFit fit_runs(const FeedRuns& runs, const machine::Machine& start);
+FeedFit fit_runs(const FeedRuns& runs, const machine::Machine& start, const calib::FitFeedOptions& options = {});
 
 /// The figures as JSON text, with a line end.
 std::string fit_json(const FeedFit& fit);

@@ -10,6 +10,7 @@
 
 #include "base/output_file.h"
 #include "base/temporary_folder.h"
+#include "machine/machine_presets.h"
 #include "plan/plan_table.h"
 #include "plan/programs.h"
 
@@ -52,7 +53,7 @@ void add_copy_job(const plan::PlanInput& input, const plan::SetupPlan& setup, co
   if (!part_given) files.emplace_back(part, plan::stl_text(setup.part));
   if (!as_given) files.emplace_back(blank, plan::stl_text(setup.blank));
   machine::Job job = plan::copy_job(input, part_given ? absolute(input.part_path) : part, as_given ? "" : blank);
-  job.machine_path = absolute(job.machine_path);
+  if (!machine::is_preset(job.machine_path)) job.machine_path = absolute(job.machine_path);
   job.program = fmt::format("program{}.nc", end);
   if (as_given) job.stock.mesh = absolute(job.stock.mesh), job.stock.vdb = absolute(job.stock.vdb);
   files.emplace_back(fmt::format("job{}.toml", end),

@@ -11,6 +11,7 @@
 #include "api/commands/rotary_program.h"
 #include "base/json.h"
 #include "base/units.h"
+#include "checks/plausibility.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
 #include "kinematics/rotary_options.h"
@@ -109,6 +110,8 @@ PosturedOverhangs posture_programs(const PostureCommand& command, Diagnostics& d
   nc::InterpreterOptions options = rotary_interpreter_options(command.job->machine, command.interpreter);
   if (!options.inch) options.inch = command.job->inch;
   const nc::Interpretation moves = nc::interpret(*command.text, options, diagnostics);
+  diagnostics.throw_if_errors();
+  checks::check_job_values(*command.job, diagnostics);
   diagnostics.throw_if_errors();
   const int tool = tool_of(command);
   const nc::OneDirection written = written_as(command);

@@ -13,14 +13,16 @@
 #include "calib/column_map.h"
 #include "calib/trace.h"
 #include "calib/traced_motion.h"
+#include "checks/plausibility.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "report/forces_at_csv.h"
 #include "report/forces_csv.h"
+#include "report/mesh_file.h"
 #include "report/report_data.h"
+#include "report/spindle_load.h"
 #include "report/summary.h"
 #include "simulate/spindle_power.h"
-#include "simulate/travel.h"
 #include "simulate/turn.h"
 #include "simulate/verdict.h"
 
@@ -104,10 +106,16 @@ std::size_t work_of_writing(const simulate::SimulatedProgram& program, const sim
 
 /// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
 void write_files(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,
-                 std::size_t forces_at, const fs::path& folder, const Diagnostics& diagnostics) {
+                 const PredictRequest& request, const Diagnostics& diagnostics) {
+  const fs::path folder = request.folder;
+  const std::size_t forces_at = request.forces_at;
   const simulate::SimulatedProgram& program = prepared.setup.program;
   const simulate::TracedRun* traced = prepared.traced_run();
   const removal::StockShape stock = removal::stock_shape(*prediction.machined, report::kMaxStockCrossings);
+  if (request.meshes) {
+    const report::SurfaceMesh mesh = report::machined_mesh(*prediction.machined);
+    for (const char* name : {"machined.stl", "machined.ply"}) report::write_mesh(folder / name, mesh);
+  }
   Stage stage("writing", work_of_writing(program, prediction, job));
   const report::FormErrorPoints points = counted(report::form_error_points(program, prediction, traced), stage);
   tbb::task_group others;
@@ -115,10 +123,16 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
   others.run([&] { report::write_form_error_vtp(folder / "form_error.vtp", points); });
   others.run([&] {
     report::write_forces_csv(folder / "forces.csv", job, program, prediction);
+    report::write_spindle_load_csv(folder / "spindle_load.csv", report::spindle_loads(job, program, prediction));
     if (forces_at > 0)
       report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", forces_at), prediction.cut.turn);
   });
   others.run([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
+  if (request.meshes)
+    others.run([&] {
+      report::write_error_mesh(folder / "form_error_mesh.ply", report::error_mesh(points, job.simulation.voxel_mm),
+                               prediction.form_error_um.p95);
+    });
   others.run_and_wait([&] {
     prediction.machined->unshare();  // what is kept once takes its room again
     prediction.machined->save(folder / "stock.vdb");
@@ -141,8 +155,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   const StageScope stages(request.progress);
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& given) {
-    simulate::check_program(job, given, diagnostics);
-    if (given.rotary) simulate::check_travel(job, given, diagnostics);
+    checks::check_program(job, given, diagnostics);
     if (!request.trace.empty())
       simulate::refuse_rotary_motion(given.rotary.get(), given.text, "traces are of X, Y and Z", diagnostics);
     if (!request.folder.empty())
@@ -151,10 +164,10 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
     if (!request.trace.empty()) measured = read_motion(given, request, diagnostics);
   };
   Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
-  PreparedJob out{
-      simulate::set_up(job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics},
-                       request.work, request.programs.get()),
-      {}};
+  PreparedJob out{simulate::set_up(job, {.check = check, .clearance = request.trace.empty()},
+                                   {.program = diagnostics, .original = of_original, .target = diagnostics},
+                                   request.work, request.programs.get()),
+                  {}};
   out.setup.original.reset();
   out.setup.target.surface.clear_stamps();  // its points are in the map
   const simulate::SimulatedProgram& program = out.setup.program;
@@ -200,7 +213,7 @@ void write_prediction(const machine::Job& job, const PreparedJob& prepared, simu
                       Diagnostics& failed) {
   const StageScope stages(request.progress);
   const fs::path folder = request.folder;
-  try_to_write([&] { write_files(job, prepared, prediction, request.forces_at, folder, diagnostics); }, failed);
+  try_to_write([&] { write_files(job, prepared, prediction, request, diagnostics); }, failed);
   // The last: where it is new, so is all beside it.
   if (!failed.has_errors()) try_to_write([&] { write_file(folder / "summary.json", summary); }, failed);
 }

@@ -22,6 +22,7 @@ struct PredictRequest {
   std::size_t forces_at = 0;  ///< line whose forces are kept over one turn; 0: none
   std::string trace{};        ///< servo trace at whose positions is cut; empty: the feed model's
   std::string columns{};      ///< column map of the trace; empty: its header names columns as Camber does
+  bool meshes = false;        ///< also machined.stl, machined.ply and form_error_mesh.ply
   StepProgress progress{};
   simulate::TargetWork work{};  ///< of the target that other processes have done
   /// The job's, where this process has read them before: they are used up. Null: they are read.

@@ -10,6 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/stage.h"
+#include "checks/plausibility.h"
 #include "simulate/turn.h"
 
 namespace camber::api {
@@ -38,7 +39,7 @@ SectionRun::SectionRun(const machine::Job& job, PartKey key, PartStore& store, S
   const StageScope stages(progress_);
   const auto check = [&](const simulate::SimulatedProgram& program) {
     diagnostics.append(said_);
-    simulate::check_program(job, program, diagnostics);
+    checks::check_program(job, program, diagnostics);
     diagnostics.throw_if_errors();
   };
   Diagnostics of_original;

@@ -8,6 +8,7 @@
 
 #include "api/commands/rotary_program.h"
 #include "base/numbers.h"
+#include "base/units.h"
 #include "calib/cycle_accuracy.h"
 #include "feedmodel/fitted_range.h"
 #include "feedmodel/joint_map.h"
@@ -22,11 +23,39 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 10000;
 
+/// Warning [feed-low]: cutting moves at a feed per minute that no milling machine is meant to cut at. Many controls
+/// read F1 to F9 as numbers of stored feeds.
+void check_low_feeds(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics) {
+  constexpr double kLow_mm_per_min = 10;
+  const nc::Move* first = nullptr;
+  double slowest = kLow_mm_per_min, time_s = 0;
+  std::size_t count = 0;
+  for (const nc::Move& m : moves.moves) {
+    const double feed = mm_per_min_from_mm_per_s(m.feed_mm_per_s), length = nc::length_mm(moves, m);
+    const bool cuts = m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc;
+    if (!cuts || m.reference || length <= 0 || feed <= 0 || feed >= kLow_mm_per_min) continue;
+    if (moves.state_of(m).feed_mode != nc::FeedMode::per_minute) continue;
+    if (!first) first = &m;
+    slowest = std::min(slowest, feed);
+    time_s += length / m.feed_mm_per_s;
+    ++count;
+  }
+  if (!first) return;
+  diagnostics.add(program.source.diagnostic(
+      Severity::warning, program.blocks[first->block].offset,
+      fmt::format("the feed is {:.3g} mm/min{}, which takes {:.0f} s; {:g} mm/min or more was expected (unit? G93 or "
+                  "G95? F1 to F9 are stored feeds on many controls)",
+                  slowest, count > 1 ? fmt::format(" or more in this move and {} more", count - 1) : std::string(),
+                  time_s, kLow_mm_per_min),
+      "feed-low"));
+}
+
 nc::Interpretation moves_of(const nc::Program& program, const machine::Machine& machine, const TimeRequest& request,
                             Diagnostics& diagnostics) {
   nc::InterpreterOptions options = rotary_interpreter_options(machine, request.interpreter);
   options.index_table = machine.index.present;
   nc::Interpretation moves = nc::interpret(program, options, diagnostics);
+  check_low_feeds(program, moves, diagnostics);
   if (diagnostics.errors() == 0) {
     check_rotary_motion(machine, program, moves, false, diagnostics);
     place_rotary_moves(machine, moves);
@@ -141,6 +170,12 @@ std::vector<Sweep> checked_sweeps(const TimeRequest& request, const machine::Mac
 /// Programs with rotary motion have a warning with its place instead ([reference-unknown]).
 std::vector<std::string> notes_of(const std::vector<report::CycleRow>& rows, bool rotary_motion) {
   std::vector<std::string> notes;
+  const feedmodel::CycleUse& all = rows.front().time.all;
+  if (all.tool_changes > 0 && all.time.tool_change_s <= 0)
+    notes.push_back(
+        fmt::format("{} tool change{} take{} 0 s: the machine file has no time for them (tool_to_tool_s or "
+                    "chip_to_chip_s of [tool_change])",
+                    all.tool_changes, all.tool_changes > 1 ? "s" : "", all.tool_changes > 1 ? "" : "s"));
   if (rotary_motion) return notes;
   const std::size_t unplaced = rows.front().time.unplaced_moves;
   if (unplaced > 0)

@@ -19,6 +19,7 @@ struct FeedTrace {
 
 struct FitFeedOptions {
   std::string columns{};  ///< column map of the servo traces (TOML); empty: Camber's own CSV
+  bool update = false;    ///< refine `start`: its corner law stands, its numbers change where the traces determine them
 };
 
 struct FitParameter {
@@ -27,7 +28,9 @@ struct FitParameter {
   std::string unit;
   std::optional<double> std_error;  ///< not given: not fitted, or the data does not determine it
   std::string note;
-  bool written = true;  ///< the value is written to the machine file
+  bool written = true;                   ///< the value is written to the machine file
+  int stretches = 0;                     ///< parts of the traces, or moves, that determine it; 0: not counted
+  std::optional<double> changed_from{};  ///< value of the start file, where it differs
 };
 
 struct FitFeedResult {

@@ -36,6 +36,7 @@ struct ForceRow {
   double specific_energy_MPa = 0;
   std::int64_t block = 0;    ///< 1-based line
   double f_axial_max_N = 0;  ///< along the tool, towards the spindle; signed, of maximum magnitude
+  bool valid = true;         ///< the model holds in all of the row's tooth passings
 };
 
 /// A row of form_error.csv: a point of the nominal surface.
@@ -49,6 +50,30 @@ struct ErrorPoint {
   double area_mm2 = 0;        ///< represented by the point
   std::int64_t block = 0;     ///< 1-based line that generated the surface here; 0: unknown
   std::int64_t tool = 0;      ///< 0: unknown
+  bool valid = true;          ///< the model holds here; figures are of valid points
+};
+
+/// A row of spindle_load.csv: the heaviest turn of the spindle in a line, for cutting alone.
+struct SpindleLoadRow {
+  std::int64_t tool = 0, line = 0;
+  double power_W = 0, torque_Nm = 0;  ///< means over that turn
+};
+
+/// A vertex of a mesh.
+struct MeshPoint {
+  double x_mm = 0, y_mm = 0, z_mm = 0, nx = 0, ny = 0, nz = 0;
+  double error_um = 0, deflection_um = 0, contour_um = 0;  ///< of largest magnitude near it; machined part: zero
+  std::int64_t block = 0;                                  ///< line that made the surface here; 0: unknown
+};
+
+/// Three points, counter-clockwise as seen from outside.
+struct MeshTriangle {
+  std::int64_t a = 0, b = 0, c = 0;
+};
+
+struct Mesh {
+  std::vector<MeshPoint> points{};
+  std::vector<MeshTriangle> triangles{};
 };
 
 struct PredictOptions {
@@ -59,6 +84,7 @@ struct PredictOptions {
   /// Servo trace of the job's program: cuts where it measured the axes, not where the feed model has them. Empty: none.
   std::string trace{};
   std::string columns{};  ///< column map of the trace, as of `camber fit-feed --columns`; empty: none
+  bool meshes = false;    ///< also fill the meshes of the result, and write them where there is an output_folder
 };
 
 /// Of PredictOptions::trace: what the feed model predicts beside it.
@@ -80,10 +106,13 @@ struct PredictResult {
   std::optional<TraceComparison> trace{};
   std::vector<ForceRow> forces{};
   std::vector<ErrorPoint> form_error{};
-  std::vector<FeedPoint> feed{};          ///< empty unless asked for
-  std::vector<std::string> doubts{};      ///< reasons why the figures are not reliable; empty: none
-  std::vector<Diagnostic> diagnostics{};  ///< warnings
-  std::string json{};                     ///< all figures, as `camber predict --json` writes them
+  std::vector<FeedPoint> feed{};               ///< empty unless asked for
+  std::vector<std::string> doubts{};           ///< reasons why the figures are not reliable; empty: none
+  std::vector<Diagnostic> diagnostics{};       ///< warnings
+  std::string json{};                          ///< all figures, as `camber predict --json` writes them
+  std::vector<SpindleLoadRow> spindle_load{};  ///< by tool, then by line
+  Mesh error_mesh{};                           ///< the surface with its form error; empty unless PredictOptions::meshes
+  Mesh machined_mesh{};                        ///< the closed surface of the machined part; the same
 };
 
 /// If the figures are beyond the model or did not converge, `doubts` says so (exit status 3 on the command line).

@@ -94,8 +94,10 @@ void StepEngager::Impl::begin_fresh() {
   }
 }
 
-/// The tiles around a tip, read where they are not there.
+/// The tiles around a tip, read where they are not there. Reading at many places, without a cut, brings tiles as
+/// cutting does: room is made before.
 std::span<const std::int32_t> StepEngager::Impl::reach(const Vec3& tip_mm) {
+  give_up(StepArena::Keep::most, kAll);
   const auto near = arena.reach(stock, blank, envelope.shape, tip_mm);
   begin_fresh();
   return near;
@@ -186,7 +188,6 @@ void StepEngager::cut(const Stamp& stamp) {
   constexpr std::int32_t kStampsATop = 4;
   if (id % kStampsATop == 0)
     m.arena.read_a_top(m.widest_voxels, [&](std::size_t t) -> const ColumnCover& { return m.tiles[t]->cover; });
-  m.give_up(StepArena::Keep::most, kAll);
 }
 
 double StepEngager::flush() {

@@ -83,19 +83,86 @@ def raised(z, by):
              for j in range(ny)] for i in range(nx)]
 
 
+class DropBall:
+    """The ball lowered onto the triangles that write_block makes of z, exactly: on their faces, edges and corners."""
+
+    def __init__(self, z, coarse=2):
+        self.z, self.step, self.coarse = z, coarse * GRID, coarse
+
+    def corner(self, i, j):
+        return (-HALF[0] + i * self.step, -HALF[1] + j * self.step, self.z[i * self.coarse][j * self.coarse])
+
+    def tip(self, x, y):
+        """Height of the ball's lowest point, above (x, y)."""
+        def cells(at, half, count):
+            return range(max(0, int((at - R + half) // self.step)),
+                         min(count, int((at + R + half) // self.step) + 1))
+
+        centre = -1e9
+        for i in cells(x, HALF[0], (len(self.z) - 1) // self.coarse):
+            for j in cells(y, HALF[1], (len(self.z[0]) - 1) // self.coarse):
+                a, b, c, d = self.corner(i, j), self.corner(i + 1, j), self.corner(i + 1, j + 1), self.corner(i, j + 1)
+                if max(a[2], b[2], c[2], d[2]) + R <= centre:
+                    continue
+                for triangle in ((a, b, c), (a, c, d)):
+                    centre = max(centre, on_face(triangle, x, y))
+                for p, q in ((a, b), (a, c), (a, d), (b, c), (c, d)):
+                    centre = max(centre, on_edge(p, q, x, y))
+        return centre - R
+
+
+def on_face(triangle, x, y):
+    """Height of the middle of a ball above (x, y) that touches the face of a triangle; -1e9: it does not."""
+    a, b, c = triangle
+    u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
+    n = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+    size = math.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2)
+    n = [k / size for k in n]
+    px, py = x - R * n[0] - a[0], y - R * n[1] - a[1]  # where it would touch, from a
+    area = u[0] * v[1] - u[1] * v[0]
+    s, t = (px * v[1] - py * v[0]) / area, (u[0] * py - u[1] * px) / area
+    if s < 0 or t < 0 or s + t > 1:
+        return -1e9
+    return a[2] + (R - n[0] * (x - a[0]) - n[1] * (y - a[1])) / n[2]
+
+
+def on_edge(p, q, x, y):
+    """The same for an edge and its ends."""
+    best = -1e9
+    for e in (p, q):
+        left = R * R - (x - e[0]) ** 2 - (y - e[1]) ** 2
+        if left >= 0:
+            best = max(best, e[2] + math.sqrt(left))
+    length = math.dist(p, q)
+    u = [(q[k] - p[k]) / length for k in range(3)]
+    w = (x - p[0], y - p[1])
+    k, flat = u[0] * w[0] + u[1] * w[1], 1 - u[2] ** 2
+    inside = (k * u[2]) ** 2 - flat * (w[0] ** 2 + w[1] ** 2 - k * k - R * R)
+    if inside < 0:
+        return best
+    rise = (k * u[2] + math.sqrt(inside)) / flat
+    return max(best, p[2] + rise) if 0 <= k + u[2] * rise <= length else best
+
+
+def without_gouges(drop, xs, y, parts=20):
+    """Tips at xs such that the lines between them stay above the part: both ends of a line that would not are lifted."""
+    tips = [drop.tip(x, y) for x in xs]
+    lifts = [0.0] * len(xs)
+    for k in range(len(xs) - 1):
+        low = max(drop.tip(xs[k] + f * (xs[k + 1] - xs[k]), y) - tips[k] - f * (tips[k + 1] - tips[k])
+                  for f in (i / parts for i in range(1, parts)))
+        lifts[k], lifts[k + 1] = max(lifts[k], low), max(lifts[k + 1], low)
+    # Coordinates have tenths of a micrometre.
+    return [(x, y, math.ceil(1e4 * (tip + lift)) / 1e4) for x, tip, lift in zip(xs, tips, lifts)]
+
+
 def finishing_rows(z, pitch, ys=(-36.0, 36.0), xs=(-46.0, 46.0)):
     """Tips of the ball in rows along X, to and fro, where it is below the face of the block."""
-    reach = int(R / GRID)
-    ball = [(di, dj, math.sqrt(R * R - (di * GRID) ** 2 - (dj * GRID) ** 2) - R)
-            for di in range(-reach, reach + 1) for dj in range(-reach, reach + 1)
-            if (di * GRID) ** 2 + (dj * GRID) ** 2 <= R * R]
-    first, last = round((xs[0] + HALF[0]) / GRID), round((xs[1] + HALF[0]) / GRID)
+    drop = DropBall(z)
     rows = []
     y = ys[0]
     while y <= ys[1] + 1e-9:
-        j = round((y + HALF[1]) / GRID)
-        row = [(-HALF[0] + i * GRID, -HALF[1] + j * GRID, max(z[i + di][j + dj] + rise for di, dj, rise in ball))
-               for i in range(first, last + 1, 2)]  # blocks of 1 mm
+        row = without_gouges(drop, [xs[0] + k for k in range(round(xs[1] - xs[0]) + 1)], y)  # blocks of 1 mm
         rows.append([p for p in row if p[2] < -1.0])
         y += pitch
     return [r if k % 2 == 0 else r[::-1] for k, r in enumerate([r for r in rows if len(r) > 3])]

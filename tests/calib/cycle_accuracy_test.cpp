@@ -1,36 +1,30 @@
-// camber time against the traces of a real control. Reads ../shared/data; skips where it is missing.
+// camber time against the traces of a real control.
 #include "calib/cycle_accuracy.h"
 
 #include <cstdlib>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
 #include "test_paths.h"
 #include "tests/support/nc_program.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::calib {
 namespace {
 
-const std::string kData = CAMBER_SHARED_DATA_DIR "/linuxcnc/";
-
 CycleAccuracy accuracy_of(const std::string& name) {
-  const tests::TempFolder folder;
-  const std::string csv = folder / "trace.csv";
-  if (std::system(("zstd -dcq '" + kData + name + "_a.csv.zst' > '" + csv + "'").c_str()) != 0) return {};
   Diagnostics diagnostics;
   const machine::Machine machine =
       machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_fitted.toml", diagnostics);
   const nc::Interpretation program =
-      tests::interpreted(SourceText::read(kData + "programs/" + name + ".ngc").text(), {});
-  return cycle_accuracy(read_trace(csv, diagnostics), program, feedmodel::cycle_time(program, machine));
+      tests::interpreted(SourceText::read(tests::data_path("linuxcnc/programs/" + name + ".ngc")).text(), {});
+  return cycle_accuracy(read_trace(tests::unpacked_data("linuxcnc/" + name + "_a.csv"), diagnostics), program,
+                        feedmodel::cycle_time(program, machine));
 }
 
 /// The paper's own comparison has errors of -2.79, -2.94 and -1.02 % (table 1a) on a program of long arcs, one of tiny
 /// blocks and a mixed one. Ours, on programs of the same kinds: within the same 3 %.
 TEST(YanShirase, A11_TimeWithinThreePerCentOfTheMachine) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no shared data";
   for (const char* name : {"arcs_g64", "shortblocks_g64", "dense_g64"}) {
     const CycleAccuracy a = accuracy_of(name);
     ASSERT_TRUE(a.has_lines) << name;

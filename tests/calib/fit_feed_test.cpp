@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include "feedmodel/timed_path.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "test_paths.h"
 #include "tests/support/feed_runs.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 #include "tests/support/test_program.h"
 
 namespace camber::calib {
@@ -79,35 +77,28 @@ TEST(FitFeed, SaysWhatATraceOfOneAxisDoesNotTell) {
 
 // --- a real control -------------------------------------------------------------------------------------------
 
-FeedRun real_run(const tests::TempFolder& folder, const std::string& name) {
-  std::string data = CAMBER_SHARED_DATA_DIR;
-  data += "/linuxcnc/";
-  const std::string csv = folder / (name + ".csv");
-  if (std::system(("zstd -dcq '" + data + name + "_a.csv.zst' > '" + csv + "'").c_str()) != 0)
-    throw std::runtime_error("zstd is needed to read the traces");
+FeedRun real_run(const std::string& name) {
   Diagnostics diagnostics;
-  const nc::Program program = nc::read_program(SourceText::read(data + "programs/" + name + ".ngc"), diagnostics);
+  const nc::Program program =
+      nc::read_program(SourceText::read(tests::data_path("linuxcnc/programs/" + name + ".ngc")), diagnostics);
   FeedRun run;
   run.program_name = name;
   run.program = nc::interpret(program, {}, diagnostics);
-  run.trace = read_trace(csv, diagnostics);
+  run.trace = read_trace(tests::unpacked_data("linuxcnc/" + name + "_a.csv"), diagnostics);
   return run;
 }
 
 /// Fitted on all seven (bench/feed/held-out predicts each by a fit on the others). dense_g64 has five parts, of which
 /// one is 3 % off.
 TEST(FitFeedSlow, PredictsTheTracedControl) {
-  std::string data = CAMBER_SHARED_DATA_DIR;
-  data += "/linuxcnc/programs/";
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << "the servo traces (shared data) are not here";
   Diagnostics diagnostics;
   const machine::Machine fitted =
       machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_fitted.toml", diagnostics);
-  const tests::TempFolder folder;
   for (const std::string name : {"protocol_xy_g61", "protocol_xy_g64", "protocol_yz_g64", "protocol_zx_g64", "arcs_g64",
                                  "shortblocks_g64", "dense_g64"}) {
-    const FeedRun run = real_run(folder, name);
-    const FeedAccuracy a = feed_accuracy(run.trace, run.program, fitted, read_parts(data + name + ".parts.csv"), {});
+    const FeedRun run = real_run(name);
+    const FeedAccuracy a = feed_accuracy(run.trace, run.program, fitted,
+                                         read_parts(tests::data_path("linuxcnc/programs/" + name + ".parts.csv")), {});
     printf(
         "%-16s time %8.2f s traced, %8.2f s predicted (%+.2f %%); parts %.2f %%; path speed rms %.2f %%, p95 %.2f %%\n",
         name.c_str(), a.time_trace_s, a.time_model_s, a.time_error_percent, a.part_time_error_percent,

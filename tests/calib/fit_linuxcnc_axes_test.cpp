@@ -2,8 +2,6 @@
 // has not seen. bench/feed/held-out does so for all twelve.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 
 #include "base/units.h"
@@ -16,13 +14,11 @@
 #include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
-#include "test_paths.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::calib {
 namespace {
-
-const std::string kFiveAxisData = CAMBER_SHARED_DATA_DIR "/linuxcnc5/";
 
 /// The chain of the machine and nothing of what it does.
 machine::Machine machine_without_limits() {
@@ -46,30 +42,19 @@ positive = "table"
 }
 
 FeedRun control_run(const std::string& name, const machine::Machine& machine) {
-  const tests::TempFolder folder;
-  const std::string csv = folder / "trace.csv";
-  if (std::system(("zstd -dcq '" + kFiveAxisData + name + "_t.csv.zst' > '" + csv + "'").c_str()) != 0)
-    throw std::runtime_error("zstd is needed to read the traces");
   Diagnostics diagnostics;
   const nc::Program program =
-      nc::read_program(SourceText::read(kFiveAxisData + "programs/" + name + ".ngc"), diagnostics);
+      nc::read_program(SourceText::read(tests::data_path("linuxcnc5/programs/" + name + ".ngc")), diagnostics);
   nc::InterpreterOptions options;
   options.rotary_axes = kinematics::rotary_options(machine);
   options.tool_offsets[1].length_mm = 80;
   FeedRun run{name, nc::interpret(program, feedmodel::interpreter_options(machine, options), diagnostics),
-              read_trace(csv, diagnostics)};
+              read_trace(tests::unpacked_data("linuxcnc5/" + name + "_t.csv"), diagnostics)};
   if (feedmodel::has_rotary_motion(run.program, machine)) kinematics::place_moves(run.program, machine);
   return run;
 }
 
-class FitLinuxcncAxes : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(kFiveAxisData)) GTEST_SKIP() << kFiveAxisData << " is not there";
-  }
-};
-
-TEST_F(FitLinuxcncAxes, RampsOnTheExactPathShowTheLimitsThatTheyReach) {
+TEST(FitLinuxcncAxes, RampsOnTheExactPathShowTheLimitsThatTheyReach) {
   const machine::Machine machine = machine_without_limits();
   const auto held = held_accelerations({control_run("combined_g94_g61", machine)});
   EXPECT_NEAR(held[0].value, 700, 0.7);
@@ -82,7 +67,7 @@ TEST_F(FitLinuxcncAxes, RampsOnTheExactPathShowTheLimitsThatTheyReach) {
   for (const FittedValue& value : held_accelerations({control_run("rotary_g64", machine)})) EXPECT_EQ(value.value, 0);
 }
 
-TEST_F(FitLinuxcncAxes, TwoTracesWithoutTipControlPredictOneWithIt) {
+TEST(FitLinuxcncAxes, TwoTracesWithoutTipControlPredictOneWithIt) {
   const machine::Machine start = machine_without_limits();
   const FitFeedResult fit =
       fit_feed({control_run("combined_g94_g61", start), control_run("rotary_g64", start)}, start, {});

@@ -2,8 +2,6 @@
 // (data/linuxcnc5).
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,21 +16,17 @@
 #include "nc/program.h"
 #include "test_paths.h"
 #include "tests/support/csv_columns.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber {
 namespace {
 
-const std::string kTraceData = CAMBER_SHARED_DATA_DIR "/linuxcnc5/";
 constexpr double kToolLength_mm = 80;
 
 using TraceColumns = std::map<std::string, std::vector<double>>;
 
 TraceColumns trace_columns(const std::string& name) {
-  const tests::TempFolder folder;
-  const std::string csv = folder.path() + "/trace.csv";
-  if (std::system(("zstd -dcq '" + kTraceData + name + "_t.csv.zst' > '" + csv + "'").c_str()) != 0) return {};
-  return tests::columns_of(SourceText::read(csv).text());
+  return tests::columns_of(SourceText::read(tests::unpacked_data("linuxcnc5/" + name + "_t.csv")).text());
 }
 
 /// The planner's angles, two cycles before those of the joints: its interpolator is x + (second difference of x) / 6.
@@ -74,7 +68,8 @@ struct ControlTrace {
 
 nc::Interpretation read_as_feed(const std::string& name, const machine::Machine& machine) {
   Diagnostics diagnostics;
-  const nc::Program text = nc::read_program(SourceText::read(kTraceData + "programs/" + name + ".ngc"), diagnostics);
+  const nc::Program text =
+      nc::read_program(SourceText::read(tests::data_path("linuxcnc5/programs/" + name + ".ngc")), diagnostics);
   nc::InterpreterOptions options;
   options.tool_offsets[1].length_mm = kToolLength_mm;
   if (!name.starts_with("tcp")) options.work_offsets_mm[54] = Vec3::Zero();  // they name joints
@@ -132,7 +127,6 @@ JointsCompared compare_joints(const std::string& name, double on_path) {
 }
 
 TEST(LinuxCncJoints, OfATraceWithAllDigitsFollowFromTheText) {
-  if (!std::filesystem::exists(kTraceData)) GTEST_SKIP() << kTraceData << " is not there";
   const JointsCompared compared = compare_joints("tcp_singular_g64", 2e-6);
   RecordProperty("worst", std::to_string(compared.worst));
   EXPECT_GT(compared.cycles, 1000U);
@@ -149,7 +143,6 @@ INSTANTIATE_TEST_SUITE_P(All, RoundedJoints,
 
 /// Positions and angles have four decimals there, and the planner's angles are reckoned back from those of the joints.
 TEST_P(RoundedJoints, FollowFromTheTextWithinTheRounding) {
-  if (!std::filesystem::exists(kTraceData)) GTEST_SKIP() << kTraceData << " is not there";
   const JointsCompared compared = compare_joints(GetParam(), 2e-4);
   RecordProperty("worst", std::to_string(compared.worst));
   EXPECT_GT(compared.cycles, 1000U);

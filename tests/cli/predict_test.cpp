@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <regex>
@@ -12,6 +14,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geometry.h"
+#include "base/stl.h"
+#include "base/units.h"
 #include "tests/support/csv_columns.h"
 #include "tests/support/run_camber.h"
 
@@ -48,11 +52,12 @@ voxel_mm = 0.2
 TEST(Predict, WritesEveryFileThatIsPromised) {
   const TempFolder folder;
   write_job(folder);
-  const auto run = run_camber(folder, "predict job.toml -o result --json figures.json");
+  const auto run = run_camber(folder, "predict job.toml -o result --json figures.json --meshes");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
-  for (const char* name : {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "form_error.ply", "stock.vdb",
-                           "report.html", "summary.json"})
+  for (const char* name :
+       {"feed.csv", "forces.csv", "machined.stl", "machined.ply", "form_error_mesh.ply", "form_error.csv",
+        "form_error.vtp", "form_error.ply", "stock.vdb", "report.html", "summary.json"})
     EXPECT_GT(std::filesystem::file_size(folder / ("result/" + std::string(name))), 0u) << name;
   EXPECT_EQ(tests::file_text(folder / "figures.json"), tests::file_text(folder / "result/summary.json"));
   const auto figures = nlohmann::json::parse(tests::file_text(folder / "figures.json"));
@@ -61,16 +66,6 @@ TEST(Predict, WritesEveryFileThatIsPromised) {
   for (const char* key : {"path", "stock"}) EXPECT_TRUE(figures["removed_mm3"][key].is_number()) << key;
   for (const char* key : {"min", "max", "mean", "rms", "p95"})
     EXPECT_TRUE(figures["form_error_um"][key].is_number()) << key;
-}
-
-TEST(Predict, GivesTheSameBytesOnOneAndTwoThreads) {
-  const TempFolder folder;
-  write_job(folder);
-  ASSERT_EQ(run_camber(folder, "--threads 1 predict job.toml -o one").status, 0);
-  ASSERT_EQ(run_camber(folder, "--threads 2 predict job.toml -o two").status, 0);
-  for (const std::string name :
-       {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "form_error.ply", "stock.vdb", "report.html"})
-    EXPECT_EQ(tests::file_text(folder / ("one/" + name)), tests::file_text(folder / ("two/" + name))) << name;
 }
 
 /// A wall along X at y = 0, one millimetre of it cut by a slender end mill; the floor at z = -1.
@@ -84,6 +79,69 @@ void write_wall_job(const TempFolder& folder, const std::string& axis_y, const s
                "10.0\n[stock]\nbox_mm = [[0, -0.5, "
                "-2], [8, 2, 0]]\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"rigid\"\n" +
                    more);
+}
+
+TEST(Predict, TellsTheLoadOfTheSpindleByToolAndLine) {
+  // Of each line the heaviest turn: as forces.csv has it. Power is torque times speed.
+  const TempFolder folder;
+  write_wall_job(folder, "");
+  ASSERT_EQ(run_camber(folder, "-q predict job.toml -o r").status, 0);
+  const std::string text = tests::file_text(folder / "r/spindle_load.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "tool,line,power_W,torque_Nm");
+  const auto load = columns_of(text), forces = columns_of(tests::file_text(folder / "r/forces.csv"));
+  ASSERT_EQ(load.at("tool"), (std::vector<double>{1}));
+  ASSERT_EQ(load.at("line"), (std::vector<double>{6}));
+  const auto& power = forces.at("power_W");
+  EXPECT_EQ(load.at("power_W")[0], *std::ranges::max_element(power));
+  EXPECT_GT(load.at("power_W")[0], 1);
+  EXPECT_NEAR(load.at("power_W")[0], load.at("torque_Nm")[0] * 3000 * 2 * kPi / 60, 2e-3);
+}
+
+/// Volume that a binary STL encloses, and its triangles with their points.
+double volume_of_stl(const std::string& bytes, std::size_t& triangles) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, 4);
+  triangles = count;
+  double six = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<float, 12> v{};
+    std::memcpy(v.data(), bytes.data() + 84 + 50 * i, sizeof v);
+    const auto point = [&](std::size_t k) { return Vec3(v[k], v[k + 1], v[k + 2]); };
+    six += point(3).dot(point(6).cross(point(9)));
+  }
+  return six / 6;
+}
+
+TEST(Predict, WritesTheMachinedPartAsAClosedMesh) {
+  const TempFolder folder;
+  write_wall_job(folder, "");
+  ASSERT_EQ(run_camber(folder, "-q predict job.toml -o r --meshes").status, 0);
+  const TriangleMesh part = read_stl(folder / "r/machined.stl");
+  EXPECT_EQ(part.open_edges(), 0u);
+  std::size_t triangles = 0;
+  const double volume = volume_of_stl(tests::file_text(folder / "r/machined.stl"), triangles);
+  // The blank less the corner that was cut; edges of the mesh are rounded by a part of a voxel.
+  const auto figures = nlohmann::json::parse(tests::file_text(folder / "r/summary.json"));
+  EXPECT_NEAR(volume, 8 * 2.5 * 2 - figures["removed_mm3"]["stock"].get<double>(), 0.15);
+  // It can be the blank of the next job.
+  folder.write("next.toml", tests::replaced(tests::file_text(folder / "job.toml"),
+                                            "box_mm = [[0, -0.5, -2], [8, 2, 0]]", "mesh = \"r/machined.stl\""));
+  const auto next = run_camber(folder, "predict next.toml -o n --meshes");
+  EXPECT_EQ(next.status, 0) << next.err;
+  const std::string ply = tests::file_text(folder / "r/form_error_mesh.ply"),
+                    head = ply.substr(0, ply.find("end_header\n"));
+  for (const char* word : {"element vertex ", "property float error_um\n", "property int block\n", "element face "})
+    EXPECT_NE(head.find(word), std::string::npos) << word;
+}
+
+TEST(Predict, GivesTheSameBytesOnOneAndTwoThreads) {
+  const TempFolder folder;
+  write_job(folder);
+  ASSERT_EQ(run_camber(folder, "--threads 1 predict job.toml -o one").status, 0);
+  ASSERT_EQ(run_camber(folder, "--threads 2 predict job.toml -o two").status, 0);
+  for (const std::string name :
+       {"feed.csv", "forces.csv", "form_error.csv", "form_error.vtp", "form_error.ply", "stock.vdb", "report.html"})
+    EXPECT_EQ(tests::file_text(folder / ("one/" + name)), tests::file_text(folder / ("two/" + name))) << name;
 }
 
 TEST(Predict, TheAxisGivesWayByForceOverStiffness) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geometry.h"
+#include "tests/support/csv_columns.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -293,31 +294,11 @@ TEST(SetUp, SecondCutMayGoDeeperThanTheFlutes) {
   EXPECT_EQ(run.err, "");
 }
 
-TEST(SetUp, SlenderToolHasNoFigures) {
-  const TempFolder folder;
-  write(folder, {.job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 61.0")});
-  const std::string warning =
-      "job.toml: warning: T1: overhang_mm = 61 is 15.2 times its diameter; the model covers up to 15 times, so its "
-      "figures are not shown [tool-slender]\n";
-  const std::string beginning =
-      warning +
-      "camber: error: T1 with overhang_mm = 61 is 15.2 times as long as its diameter; the model covers up to 15 times: "
-      "no figures";
-  EXPECT_EQ(run_camber(folder, "check p.nc --job job.toml").err, warning);
-  const CamberRun run = run_camber(folder, "predict job.toml -o result");
-  EXPECT_EQ(run.status, 3);
-  EXPECT_EQ(run.err.substr(0, beginning.size()), beginning);
-  EXPECT_NE(run.out.find("force, deflection and form error: beyond the model's range\n"), std::string::npos) << run.out;
-  EXPECT_EQ(run.out.find("p95"), std::string::npos) << run.out;
-  const auto json = nlohmann::json::parse(tests::file_text(folder / "result/summary.json"));
-  for (const char* key : {"min", "max", "mean", "rms", "p95"}) EXPECT_TRUE(json["form_error_um"][key].is_null()) << key;
-  EXPECT_TRUE(json["force_N"]["max"].is_null());
-  EXPECT_EQ(json["beyond_model"]["slender_tools"], nlohmann::json::array({1}));
-  EXPECT_EQ(tests::file_text(folder / "result/report.html").find("form error, 95th percentile"), std::string::npos);
-  const CamberRun moved = run_camber(folder, "compensate job.toml -o out.nc");
-  EXPECT_EQ(moved.status, 3);
-  EXPECT_EQ(moved.err.substr(0, beginning.size()), beginning);
-  EXPECT_FALSE(std::filesystem::exists(folder / "out.nc"));
+TEST(SetUp, SlenderToolIsRefused) {
+  expect_refused(
+      {.job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 61.0")},
+      "job.toml: error: T1: overhang_mm = 61 is 15.2 times its diameter; no more than 15 times was expected: "
+      "a longer tool is no static beam (diameter_mm and overhang_mm are in mm) [tool-slender]\n");
 }
 
 TEST(SetUp, DeflectionBeyondTheModelHasNoFigures) {
@@ -335,6 +316,46 @@ TEST(SetUp, DeflectionBeyondTheModelHasNoFigures) {
                          " um are covered, in line 6: no figures; a shorter or thicker tool or a smaller cut was "
                          "expected\n");
   EXPECT_NE(run.out.find("force, deflection and form error: beyond the model's range\n"), std::string::npos) << run.out;
+}
+
+/// A slot as deep as the model bends the tool, and a shallow one that is longer.
+TEST(SetUp, WhatIsBeyondTheModelIsInNoFigure) {
+  const TempFolder folder;
+  write(folder, {.program = replaced(kSlot, "G0 Z-2\nG1 X12 F900\nG0 Z5",
+                                     "G0 Z-2\nG1 X4 F900\nG0 Z5\nX-4 Y8\nZ-0.2\nG1 X24\nG0 Z5"),
+                 .job = replaced(replaced(kJob, "[[0, -5, -5], [8, 5, 0]]", "[[0, -5, -5], [20, 12, 0]]"),
+                                 "ktc_MPa = 20.0", "ktc_MPa = 2000.0")});
+  const CamberRun run = run_camber(folder, "predict job.toml -o result");
+  EXPECT_EQ(run.status, 3) << run.err;
+  const auto json = nlohmann::json::parse(tests::file_text(folder / "result/summary.json"));
+  const auto& beyond = json["beyond_model"];
+  const double share = beyond["share"];
+  EXPECT_GT(share, 0.1);
+  EXPECT_LT(share, 0.5);
+  EXPECT_EQ(beyond["lines"], nlohmann::json::array({6}));
+  // The figures again from the rows that are valid.
+  double area = 0, invalid = 0, squares = 0;
+  auto points = tests::columns_of(tests::file_text(folder / "result/form_error.csv"));
+  for (std::size_t i = 0; i < points["valid"].size(); ++i) {
+    area += points["area_mm2"][i];
+    if (points["valid"][i] == 0) {
+      invalid += points["area_mm2"][i];
+      EXPECT_LT(points["y_mm"][i], 5) << "the shallow slot is valid";
+    } else {
+      squares += points["area_mm2"][i] * std::pow(points["error_um"][i], 2);
+    }
+  }
+  EXPECT_NEAR(invalid / area, share, 1e-4);
+  EXPECT_NEAR(std::sqrt(squares / (area - invalid)), json["form_error_um"]["rms"], 0.01);
+  double force = 0;
+  auto rows = tests::columns_of(tests::file_text(folder / "result/forces.csv"));
+  for (std::size_t i = 0; i < rows["valid"].size(); ++i) {
+    EXPECT_TRUE(rows["valid"][i] == 1 || rows["block"][i] == 6) << "the shallow slot is valid";
+    if (rows["valid"][i] == 1) force = std::max(force, rows["f_max_N"][i]);
+  }
+  EXPECT_NEAR(force, json["force_N"]["max"], 0.01);
+  EXPECT_NE(run.err.find(" of the surface and "), std::string::npos) << run.err;
+  EXPECT_NE(run.out.find("beyond the model, in no figure: "), std::string::npos) << run.out;
 }
 
 TEST(SetUp, NothingLeftToJudge) {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <sstream>
 #include <vector>
@@ -16,14 +14,11 @@
 #include "feedmodel/plan.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/program_joints.h"
-#include "test_paths.h"
 #include "tests/feedmodel/rotary_programs.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::feedmodel {
 namespace {
-
-const std::string kTraces = CAMBER_SHARED_DATA_DIR "/linuxcnc5/";
 
 using rotary_tests::cutting_time_s;
 using rotary_tests::fast_machine;
@@ -193,11 +188,8 @@ struct Traced {
 
 Traced traced(const std::string& name) {
   Traced out;
-  out.program = kTraces + "programs/" + name + ".ngc";
-  const camber::tests::TempFolder folder;
-  const std::string csv = folder.path() + "/trace.csv";
-  if (std::system(("zstd -dcq '" + kTraces + name + "_t.csv.zst' > '" + csv + "'").c_str()) != 0) return out;
-  const std::string text = SourceText::read(csv).text();
+  out.program = tests::data_path("linuxcnc5/programs/" + name + ".ngc");
+  const std::string text = SourceText::read(tests::unpacked_data("linuxcnc5/" + name + "_t.csv")).text();
   std::istringstream lines(text);
   std::string line, cell;
   std::getline(lines, line);
@@ -219,7 +211,6 @@ INSTANTIATE_TEST_SUITE_P(LinuxCnc, TracedPrograms,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_P(TracedPrograms, EveryPartTakesTheTimeThatTheControlTook) {
-  if (!std::filesystem::exists(kTraces)) GTEST_SKIP() << kTraces << " is not there";
   constexpr double kCycles = 2;  // the line changes at one end or the other of a cycle
   const Traced trace = traced(GetParam());
   ASSERT_FALSE(trace.cycles.empty());
@@ -235,7 +226,8 @@ TEST_P(TracedPrograms, EveryPartTakesTheTimeThatTheControlTook) {
     for (auto at = of.lower_bound(first); at != of.end() && at->first <= last; ++at) count += at->second;
     return count;
   };
-  std::istringstream parts(SourceText::read(kTraces + "programs/" + std::string(GetParam()) + ".parts.csv").text());
+  std::istringstream parts(
+      SourceText::read(tests::data_path("linuxcnc5/programs/" + std::string(GetParam()) + ".parts.csv")).text());
   std::string line;
   std::getline(parts, line);
   std::size_t count = 0;
@@ -252,11 +244,11 @@ TEST_P(TracedPrograms, EveryPartTakesTheTimeThatTheControlTook) {
 
 /// No joint is commanded faster, or accelerated more, than its axis allows, where the control looks at its joints.
 TEST_P(TracedPrograms, WithJointLimitsNoJointExceedsItsLimit) {
-  if (!std::filesystem::exists(kTraces)) GTEST_SKIP() << kTraces << " is not there";
   constexpr double kOver = 1.01;
   machine::Machine m = traced_machine();
   m.control.joint_limits = true;
-  const auto moves = moves_of(SourceText::read(kTraces + "programs/" + std::string(GetParam()) + ".ngc"), m);
+  const auto moves =
+      moves_of(SourceText::read(tests::data_path("linuxcnc5/programs/" + std::string(GetParam()) + ".ngc")), m);
   std::vector<std::array<double, 6>> joints;
   predict_joints(moves, m, [&](std::span<const TimedSample> samples, std::span<const JointSample> rotary) {
     for (std::size_t i = 0; i < samples.size(); ++i) {

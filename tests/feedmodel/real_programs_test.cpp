@@ -12,6 +12,7 @@
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "test_paths.h"
+#include "tests/support/test_data.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -43,11 +44,8 @@ std::vector<fs::path> programs() {
   std::vector<fs::path> all;
   for (const auto& entry : fs::recursive_directory_iterator(CAMBER_SOURCE_DIR "/samples"))
     if (entry.path().extension() == ".nc") all.push_back(entry.path());
-  const fs::path data = CAMBER_SHARED_DATA_DIR;
-  if (fs::exists(data / "nc"))
-    for (const auto& entry : fs::directory_iterator(data / "nc"))
-      if (entry.path().extension() != ".tsv") all.push_back(entry.path());
-  if (fs::exists(data / "nist/box_op5.nc")) all.push_back(data / "nist/box_op5.nc");
+  for (const std::string& path : tests::data_files("nc")) all.emplace_back(path);
+  all.emplace_back(tests::data_path("nist/box_op5.nc"));
   std::ranges::sort(all);
   return all;
 }

@@ -1,8 +1,6 @@
-// Joints against the traces of a real control with five axes (data/linuxcnc5).
+// Joints against the traces of a real control with five axes (tests/data/linuxcnc5).
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -11,20 +9,17 @@
 #include "kinematics/chain.h"
 #include "tests/kinematics/machines.h"
 #include "tests/support/csv_columns.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::kinematics {
 namespace {
 
 using Columns = std::map<std::string, std::vector<double>>;
-const std::string kData = CAMBER_SHARED_DATA_DIR "/linuxcnc5/";
 constexpr double kLengthMm = 80;  ///< of T1
 
 Columns trace_of(const std::string& name) {
-  const camber::tests::TempFolder folder;
-  const std::string csv = folder.path() + "/trace.csv";
-  if (std::system(("zstd -dcq '" + kData + name + "_t.csv.zst' > '" + csv + "'").c_str()) != 0) return {};
-  return camber::tests::columns_of(SourceText::read(csv).text());
+  return camber::tests::columns_of(
+      SourceText::read(camber::tests::unpacked_data("linuxcnc5/" + name + "_t.csv")).text());
 }
 
 /// Largest distance between the joints of the trace and those that belong to the planner's tip and angles, over the
@@ -56,7 +51,6 @@ Compared compare(const Columns& t, const std::vector<double>& a_deg, const std::
 }
 
 TEST(LinuxCncTrace, JointsFollowFromThePosesOfThePlanner) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << kData << " is not there";
   const Columns t = trace_of("tcp_singular_g64");
   ASSERT_FALSE(t.empty());
   const Compared c = compare(t, t.at("a_world_deg"), t.at("c_world_deg"));
@@ -83,7 +77,6 @@ INSTANTIATE_TEST_SUITE_P(All, RoundedTrace,
 
 /// Positions have four decimals there, and so have the angles, of which the planner's must be reckoned back.
 TEST_P(RoundedTrace, JointsFollowFromThePosesWithinTheRounding) {
-  if (!std::filesystem::exists(kData)) GTEST_SKIP() << kData << " is not there";
   const Columns t = trace_of(GetParam());
   ASSERT_FALSE(t.empty());
   const Compared c = compare(t, before_interpolation(t.at("a_cmd_deg")), before_interpolation(t.at("c_cmd_deg")));

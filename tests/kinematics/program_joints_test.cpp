@@ -1,8 +1,6 @@
 #include "kinematics/program_joints.h"
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -13,7 +11,7 @@
 #include "nc/interpreter.h"
 #include "tests/kinematics/machines.h"
 #include "tests/support/csv_columns.h"
-#include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::kinematics {
 namespace {
@@ -56,14 +54,11 @@ std::string said(const std::string& text, const machine::Machine& machine, doubl
 
 /// Every block of this program ends at rest: the trace has the joints of its end.
 TEST(ProgramJoints, AreThoseOfTheTraceAtTheEndsOfBlocks) {
-  const std::string data = CAMBER_SHARED_DATA_DIR "/linuxcnc5/";
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not there";
   const machine::Machine machine = sample("table_ac_linuxcnc");
-  const Read r = read(SourceText::read(data + "programs/tcp_fixed_g61.ngc"), machine, "linuxcnc", 80);
-  const camber::tests::TempFolder folder;
-  const std::string csv = folder.path() + "/trace.csv";
-  ASSERT_EQ(std::system(("zstd -dcq '" + data + "tcp_fixed_g61_t.csv.zst' > '" + csv + "'").c_str()), 0);
-  auto t = camber::tests::columns_of(SourceText::read(csv).text());
+  const Read r =
+      read(SourceText::read(camber::tests::data_path("linuxcnc5/programs/tcp_fixed_g61.ngc")), machine, "linuxcnc", 80);
+  auto t =
+      camber::tests::columns_of(SourceText::read(camber::tests::unpacked_data("linuxcnc5/tcp_fixed_g61_t.csv")).text());
   ProgramJoints joints(machine, r.moves);
   int compared = 0;
   while (!joints.done()) {

@@ -101,11 +101,19 @@ TEST(ToolComments, AloneOnALineBelongToTheChangeBelow) {
   EXPECT_NEAR(*tools[1].diameter_mm, 0.1495 * 25.4, 1e-9);
 }
 
+/// Without a warning.
+std::vector<ToolProposal> read(const std::string& path, bool inch) {
+  Diagnostics diagnostics;
+  auto out = read_tools(path, inch, diagnostics);
+  throw_if_any(diagnostics);
+  return out;
+}
+
 TEST(ToolTable, OfLinuxCncIsRead) {
   const tests::TempFolder folder;
   const auto path = folder.write(
       "tool.tbl", "; a comment\nT1 P17 X0 Y0 Z0.511 D0.125 I0 J0 Q0 ;1/8 flat end mill\n\nT2 P2 Z+1.5 ;ball 6mm\n");
-  const auto tools = read_tools(path, true);
+  const auto tools = read(path, true);
   ASSERT_EQ(tools.size(), 2u);
   EXPECT_NEAR(*tools[0].diameter_mm, 3.175, 1e-9);
   EXPECT_EQ(tools[0].type, ToolType::flat);
@@ -128,7 +136,7 @@ TEST(ToolTable, NamesTheWordThatIsNone) {
   const tests::TempFolder folder;
   const auto path = folder.write("tool.tbl", "T1 P1 D6\nT2 Px D8\n");
   EXPECT_EQ(
-      message_of([&] { read_tools(path, false); }, folder),
+      message_of([&] { read(path, false); }, folder),
       "tool.tbl:2:4: error: \"Px\" in a tool table; a letter with a number was expected, as in T1 P1 D6.0 ;remark "
       "[tool-table]\n    T2 Px D8\n       ^");
 }
@@ -141,9 +149,11 @@ TEST(ToolLibrary, OfFusionIsRead) {
      "post-process": {"number": 9}},
     {"type": "bull nose end mill", "unit": "millimeters", "BMC": "hss",
      "geometry": {"DC": 10, "RE": 1, "NOF": 4}, "post-process": {"number": 2}},
-    {"type": "holder"}, 7]})");
-  const auto tools = read_tools(path, false);
-  ASSERT_EQ(tools.size(), 2u);
+    {"type": "holder"}]})");
+  const auto tools = read(path, false);
+  ASSERT_EQ(tools.size(), 3u);
+  EXPECT_EQ(tools[2].kind, "holder");
+  EXPECT_FALSE(tools[2].number.has_value());
   EXPECT_EQ(tools[0].number, 9);
   EXPECT_EQ(tools[0].what, "1/4 ball");
   EXPECT_EQ(tools[0].type, ToolType::ball);
@@ -172,8 +182,8 @@ TEST(ToolLibrary, ReadsTheZipFileThatFusionExports) {
   const std::string text =
       R"({"data": [{"type": "ball end mill", "unit": "millimeters", "description": "6 mm ball", "BMC": "carbide",
           "geometry": {"DC": 6, "NOF": 2, "LB": 40}, "post-process": {"number": 9}}]})";
-  const auto packed = read_tools(zipped(folder, "shop.tools", "library/tools.json", text), false),
-             plain = read_tools(folder.write("shop.json", text), false);
+  const auto packed = read(zipped(folder, "shop.tools", "library/tools.json", text), false),
+             plain = read(folder.write("shop.json", text), false);
   ASSERT_EQ(packed.size(), 1u);
   EXPECT_EQ(packed[0].number, 9);
   EXPECT_EQ(packed[0].type, ToolType::ball);
@@ -183,15 +193,14 @@ TEST(ToolLibrary, ReadsTheZipFileThatFusionExports) {
 
 TEST(ToolLibrary, SaysWhatIsWrongInAZipFile) {
   const tests::TempFolder folder;
-  EXPECT_EQ(message_of([&] { read_tools(zipped(folder, "a.tools", "other.json", "{}"), false); }, folder),
-            "a.tools: error: is a zip file without tools.json [tool-library]");
-  EXPECT_EQ(message_of([&] { read_tools(zipped(folder, "b.tools", "tools.json", "[\n}"), false); }, folder),
+  EXPECT_EQ(message_of([&] { read(zipped(folder, "a.tools", "readme.txt", "{}"), false); }, folder),
+            "a.tools: error: is a zip file without a .json file [tool-library]");
+  EXPECT_EQ(message_of([&] { read(zipped(folder, "b.tools", "tools.json", "[\n}"), false); }, folder),
             "b.tools/tools.json:2:1: error: this is not JSON; a tool library of Fusion (File, Export, JSON) was "
             "expected [tool-library]\n"
             "    }\n"
             "    ^");
-  EXPECT_NE(message_of([&] { read_tools(folder / "none.tools", false); }, folder).find("[file-missing]"),
-            std::string::npos);
+  EXPECT_NE(message_of([&] { read(folder / "none.tools", false); }, folder).find("[file-missing]"), std::string::npos);
 }
 
 std::string hsm(const std::string& tools) {
@@ -225,8 +234,8 @@ std::string utf16(const std::string& ascii) {
 TEST(ToolLibrary, ReadsTheXmlOfHsmWorks) {
   const tests::TempFolder folder;
   for (const std::string& text : {hsm(kHsmTools), utf16(hsm(kHsmTools))}) {
-    const auto tools = read_tools(folder.write("shop.hsmlib", text), false);
-    ASSERT_EQ(tools.size(), 3u) << "the ball has no number in the machine";
+    const auto tools = read(folder.write("shop.hsmlib", text), false);
+    ASSERT_EQ(tools.size(), 4u);
     EXPECT_EQ(tools[0].number, 4) << "not the id";
     EXPECT_EQ(tools[0].what, "10 mm flat");
     EXPECT_EQ(tools[0].type, ToolType::flat);
@@ -242,14 +251,16 @@ TEST(ToolLibrary, ReadsTheXmlOfHsmWorks) {
     EXPECT_NEAR(*tools[1].corner_radius_mm, 1.5875, 1e-9);
     EXPECT_NEAR(*tools[1].overhang_mm, 50.8, 1e-9);
     EXPECT_EQ(tools[1].youngs_modulus_GPa, 210);
-    EXPECT_FALSE(tools[2].type.has_value()) << "a tap is no cutter that camber has";
+    EXPECT_EQ(tools[2].type, ToolType::drill);
+    EXPECT_EQ(tools[2].doubt, "taps and reamers stand as drills: they make holes alone");
+    EXPECT_FALSE(tools[3].number.has_value()) << "the ball has no number in the machine";
   }
 }
 
 TEST(ToolLibrary, SaysWhatIsWrongInTheXmlOfHsmWorks) {
   const tests::TempFolder folder;
   const auto said = [&](const std::string& text) {
-    return message_of([&] { read_tools(folder.write("a.hsmlib", text), false); }, folder);
+    return message_of([&] { read(folder.write("a.hsmlib", text), false); }, folder);
   };
   EXPECT_EQ(said("<tool"),
             "a.hsmlib: error: this is not XML (Error parsing start element tag); a tool library of HSMWorks (XML with "
@@ -270,17 +281,16 @@ TEST(ToolLibrary, SaysWhatWasExpected) {
   const auto broken = folder.write("a.json", "{\"data\": [\n}"), other = folder.write("b.json", "[1]"),
              zip = folder.write("c.tools", "PK");
   EXPECT_EQ(
-      message_of([&] { read_tools(broken, false); }, folder),
+      message_of([&] { read(broken, false); }, folder),
       "a.json:2:1: error: this is not JSON; a tool library of Fusion (File, Export, JSON) was expected [tool-library]\n"
       "    }\n"
       "    ^");
-  EXPECT_EQ(message_of([&] { read_tools(other, false); }, folder),
+  EXPECT_EQ(message_of([&] { read(other, false); }, folder),
             "b.json: error: has no list \"data\"; a tool library of Fusion (File, Export, JSON) was expected "
             "[tool-library]");
-  EXPECT_EQ(message_of([&] { read_tools(zip, false); }, folder),
-            "c.tools: error: is not a zip file; one with tools.json in it was expected [tool-library]");
-  EXPECT_NE(message_of([&] { read_tools(folder / "none.json", false); }, folder).find("[file-missing]"),
-            std::string::npos);
+  EXPECT_EQ(message_of([&] { read(zip, false); }, folder),
+            "c.tools: error: is not a zip file; one with a .json file in it was expected [tool-library]");
+  EXPECT_NE(message_of([&] { read(folder / "none.json", false); }, folder).find("[file-missing]"), std::string::npos);
 }
 
 }  // namespace

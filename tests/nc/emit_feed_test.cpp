@@ -7,8 +7,8 @@
 
 #include "base/units.h"
 #include "nc/emit.h"
-#include "test_paths.h"
 #include "tests/nc/macro_text.h"
+#include "tests/support/test_data.h"
 
 namespace camber::nc {
 namespace {
@@ -372,10 +372,9 @@ TEST(EmitFeed, AskingForWhatIsThereChangesNoByte) {
   }
 }
 
-TEST(EmitFeed, SharedProgramsAtHalfTheirFeed) {
-  auto files = shared_files("nc");
-  for (const auto& f : shared_files("linuxcnc/programs")) files.push_back(f);
-  if (files.size() < 3) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
+TEST(EmitFeed, CamProgramsAtHalfTheirFeed) {
+  auto files = tests::data_files("nc");
+  for (const auto& f : tests::data_files("linuxcnc/programs")) files.push_back(f);
   std::size_t programs = 0, edited = 0, not_made = 0;
   for (const auto& file : files) {
     SCOPED_TRACE(file);

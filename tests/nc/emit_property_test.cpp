@@ -9,9 +9,9 @@
 
 #include "base/units.h"
 #include "nc/emit.h"
-#include "test_paths.h"
 #include "tests/nc/nc_text.h"
 #include "tests/support/random_program.h"
+#include "tests/support/test_data.h"
 
 namespace camber::nc {
 namespace {
@@ -263,11 +263,11 @@ TEST_F(NcEmitProperty, ViaPointsArePassedInOrder) {
   EXPECT_GT(counts_.via_points, 100u);
 }
 
-/// Every program of the shared data that reads without an error.
-std::map<std::string, Read> shared_programs() {
+/// Every program of tests/data that reads without an error, of CAM systems and others.
+std::map<std::string, Read> real_programs() {
   std::map<std::string, Read> out;
   for (const char* folder : {"nc", "linuxcnc/programs", "nist"})
-    for (const auto& file : shared_files(folder)) {
+    for (const auto& file : tests::data_files(folder)) {
       if (!file.ends_with(".nc") && std::string_view(folder) == "nist") continue;
       Read r = read_text(SourceText::read(file).text());
       if (r.diagnostics.has_errors() || r.moves.moves.empty()) continue;
@@ -276,9 +276,8 @@ std::map<std::string, Read> shared_programs() {
   return out;
 }
 
-TEST_F(NcEmitProperty, SharedProgramsComeOutByteForByte) {
-  const auto programs = shared_programs();
-  if (programs.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
+TEST_F(NcEmitProperty, RealProgramsComeOutByteForByte) {
+  const auto programs = real_programs();
   for (const auto& [file, r] : programs) {
     EXPECT_TRUE(emit(r.program, r.moves, {}, {}) == r.program.source.text()) << file;
     ++counts_.programs;
@@ -287,9 +286,8 @@ TEST_F(NcEmitProperty, SharedProgramsComeOutByteForByte) {
   EXPECT_GE(programs.size(), 15u);
 }
 
-TEST_F(NcEmitProperty, OneEditOfASharedProgramChangesNoMoreThanItMust) {
-  const auto programs = shared_programs();
-  if (programs.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
+TEST_F(NcEmitProperty, OneEditOfARealProgramChangesNoMoreThanItMust) {
+  const auto programs = real_programs();
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-0.05, 0.05);
   for (const auto& [file, r] : programs) {

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "base/units.h"
-#include "test_paths.h"
 #include "tests/nc/nc_text.h"
+#include "tests/support/test_data.h"
 
 namespace camber::nc {
 namespace {
@@ -304,11 +304,10 @@ TEST(NcEmit, RandomEditsOfRandomProgramsRoundTrip) {
   }
 }
 
-TEST(NcEmit, EveryReadableSharedProgramRoundTrips) {
-  auto files = shared_files("nc");
-  for (const auto& f : shared_files("linuxcnc/programs")) files.push_back(f);
-  files.push_back(shared_file("nist/box_op5.nc"));
-  if (files.size() < 3) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
+TEST(NcEmit, EveryReadableCamProgramRoundTrips) {
+  auto files = tests::data_files("nc");
+  for (const auto& f : tests::data_files("linuxcnc/programs")) files.push_back(f);
+  files.push_back(tests::data_path("nist/box_op5.nc"));
   std::mt19937 random(5);
   int readable = 0;
   for (const auto& file : files) {

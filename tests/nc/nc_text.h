@@ -2,13 +2,10 @@
 // Short programs in tests, and what is said of them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "nc/interpreter.h"
-#include "test_paths.h"
 
 namespace camber::nc {
 
@@ -63,23 +60,6 @@ inline Read read_clean(std::string text, const InterpreterOptions& options = uni
 inline void expect_near_mm(const Vec3& actual, const Vec3& expected, double tolerance_mm = 1e-9) {
   EXPECT_LE((actual - expected).cwiseAbs().maxCoeff(), tolerance_mm)
       << "actual " << actual.transpose() << ", expected " << expected.transpose();
-}
-
-/// A file of the shared data; empty where the folder is missing.
-inline std::string shared_file(const std::string& name) {
-  const std::string path = (std::filesystem::path(CAMBER_SHARED_DATA_DIR) / name).string();
-  return std::filesystem::exists(path) ? path : std::string();
-}
-
-/// All regular files of a folder of the shared data, sorted; empty where it is missing.
-inline std::vector<std::string> shared_files(const std::string& folder) {
-  std::vector<std::string> files;
-  std::error_code none;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(CAMBER_SHARED_DATA_DIR) / folder, none))
-    if (entry.is_regular_file()) files.push_back(entry.path().string());
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 }  // namespace camber::nc

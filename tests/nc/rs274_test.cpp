@@ -5,18 +5,16 @@
 #include <random>
 #include <string_view>
 
-#include "test_paths.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/random_program.h"
+#include "tests/support/test_data.h"
 
 namespace camber::nc {
 namespace {
 
 TEST_F(Rs274, LinuxCncProgramsMoveAlike) {
   if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
-  const auto files = shared_files("linuxcnc/programs");
-  if (files.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
-  for (const auto& f : files) {
+  for (const auto& f : tests::data_files("linuxcnc/programs")) {
     if (!f.ends_with(".ngc")) continue;
     SCOPED_TRACE(f);
     expect_same_moves(SourceText::read(f).text());
@@ -25,10 +23,8 @@ TEST_F(Rs274, LinuxCncProgramsMoveAlike) {
 
 TEST_F(Rs274, BallFinishingOfBoxOp5MovesAlike) {
   if (!rs274_present()) GTEST_SKIP() << "rs274 (package linuxcnc-uspace) is not on the PATH";
-  const std::string path = shared_file("nist/box_op5.nc");
-  if (path.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
   std::string text = "G20 G17 G40 G49 G90 G94\n", line;
-  std::ifstream in(path);
+  std::ifstream in(tests::data_path("nist/box_op5.nc"));
   bool ours = false;
   while (std::getline(in, line)) {
     if (ours && line.find("G28") != std::string::npos) break;

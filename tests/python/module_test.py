@@ -90,6 +90,37 @@ class Arrays(unittest.TestCase):
         self.assertEqual(camber.feed(SAMPLE / "finish.nc", MACHINE, points=False).points.t_s.shape, (0,))
 
 
+class Meshes(unittest.TestCase):
+    def test_they_are_arrays_for_matplotlib_and_pyvista(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = camber.predict(COARSE, meshes=True, output_folder=folder)
+            self.assertTrue((pathlib.Path(folder) / "machined.stl").exists())
+            with open(pathlib.Path(folder) / "spindle_load.csv", encoding="ascii") as file:
+                rows = [line.split(",") for line in file.read().split()[1:]]
+        for mesh in (result.error_mesh, result.machined_mesh):
+            self.assertEqual(mesh.points.shape, (len(mesh), 3))
+            self.assertFalse(mesh.points.flags.owndata)
+            self.assertFalse(mesh.points.flags.writeable)
+            numpy.testing.assert_allclose(numpy.linalg.norm(mesh.normals, axis=1), 1)
+            self.assertEqual(mesh.triangles.min(), 0)
+            self.assertEqual(mesh.triangles.max(), len(mesh) - 1)
+            faces = mesh.faces.reshape(-1, 4)
+            self.assertTrue((faces[:, 0] == 3).all())
+            numpy.testing.assert_array_equal(faces[:, 1:], mesh.triangles)
+        # The largest error of the points is that of the vertices; the part is closed.
+        self.assertEqual(abs(result.error_mesh.error_um).max(), abs(result.form_error.error_um).max())
+        a, b, c = (result.machined_mesh.points[result.machined_mesh.triangles[:, k]] for k in range(3))
+        numpy.testing.assert_allclose(numpy.cross(b - a, c - a).sum(axis=0), 0, atol=1e-9)
+        self.assertGreater(numpy.einsum("ij,ij->i", a, numpy.cross(b, c)).sum() / 6, 100)
+        load = result.spindle_load
+        self.assertEqual([(str(t), str(line)) for t, line in zip(load.tool, load.line)], [tuple(r[:2]) for r in rows])
+        self.assertEqual(load.power_W.max(), result.forces.power_W.max())
+        numpy.testing.assert_array_equal(result.forces.points[:, 1], result.forces.y_mm)
+        numpy.testing.assert_array_equal(result.form_error.normals[:, 2], result.form_error.nz)
+        none = camber.predict(COARSE)
+        self.assertEqual((len(none.error_mesh), none.error_mesh.triangles.shape), (0, (0, 3)))
+
+
 class Inputs(unittest.TestCase):
     def test_a_wrong_program_raises_with_its_place(self):
         program = camber.program_from_text("wrong.nc", "G21\nG90\nG1 X10 F0\n")
@@ -201,4 +232,4 @@ class Example(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

@@ -112,6 +112,25 @@ TEST(CutterVolume, GeneralWithConeBottomArcAndTaper) {
   expect_volume(tool, area, "general");
 }
 
+TEST(CutterVolume, Lens) {
+  auto tool = make_tool(ToolType::general, 10, 2, 30);
+  const double r = tool.corner_radius_mm = tool.corner_centre_z_mm = 20;
+  // The segment of the circle up to where it reaches the diameter, then the wall.
+  const double h = r - std::sqrt(r * r - 25);
+  expect_volume(tool, ball_area(r, h) + 10 * (kDepth - h), "lens");
+}
+
+TEST(CutterVolume, Barrel) {
+  auto tool = make_tool(ToolType::general, 10, 2, 30);
+  const double r = tool.corner_radius_mm = 85, top = tool.corner_centre_z_mm = 10;
+  tool.corner_centre_r_mm = 5 - r;
+  // Twice the half width from the axis, the flank's arc, over the depth.
+  const auto integral = [r](double below) {
+    return (below * std::sqrt(r * r - below * below) + r * r * std::asin(below / r)) / 2;
+  };
+  expect_volume(tool, 2 * ((5 - r) * kDepth + integral(top) - integral(top - kDepth)), "barrel");
+}
+
 TEST(CutterVolume, ChipsAreTheStocksLossOnARampDownAndUp) {
   auto tapered = make_tool(ToolType::tapered_ball, 3, 2, 30);
   tapered.taper_rad = rad_from_deg(10);

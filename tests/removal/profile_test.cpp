@@ -43,6 +43,20 @@ machine::Tool general() {
   tool.flute_length_mm = 14;
   return tool;
 }
+/// Circle segments, docs/cutters.md: a lens of radius 40 and diameter 10, and a barrel of radius 85 whose thickest
+/// place lies 10 mm above the tip.
+machine::Tool lens() {
+  auto tool = make_tool(ToolType::general, 10, 3, 30);
+  tool.corner_radius_mm = tool.corner_centre_z_mm = 40;
+  return tool;
+}
+machine::Tool barrel() {
+  auto tool = make_tool(ToolType::general, 10, 4, 30);
+  tool.corner_radius_mm = 85;
+  tool.corner_centre_r_mm = 5 - 85;
+  tool.corner_centre_z_mm = 10;
+  return tool;
+}
 std::vector<machine::Tool> all_tools() {
   auto bull = make_tool(ToolType::bull, 10, 3, 30);
   bull.corner_radius_mm = 1.5;
@@ -52,7 +66,9 @@ std::vector<machine::Tool> all_tools() {
           tapered_ball(),
           chamfer(),
           drill(),
-          general()};
+          general(),
+          lens(),
+          barrel()};
 }
 
 /// Lowest height of the cutter at a radius, from the meaning of its parameters alone: the solid is what lies above the
@@ -150,6 +166,29 @@ TEST(Profile, TaperedBallHasItsTangentPointWhereTheTradeHasIt) {
   EXPECT_NEAR(ends.wall.x(), 2 * std::cos(tool.taper_rad), 1e-9);
   EXPECT_NEAR(ends.wall.y(), 2 * (1 - std::sin(tool.taper_rad)), 1e-9);
   EXPECT_NEAR(shape_of(tool).radius_mm, ends.wall.x() + (12 - ends.wall.y()) * std::tan(tool.taper_rad), 1e-9);
+}
+
+/// A lens cutter leaves cusps of a_e^2 / (8 R) between its rows: the height of its profile at half the distance.
+TEST(Profile, OfALensLeavesTheCuspsOfItsRadius) {
+  const Profile profile(machine::parameters_of(lens()));
+  constexpr double kRadius_mm = 40;
+  for (const double row_mm : {0.5, 1.0, 2.0}) {
+    const double cusp_mm = profile.height_at_radius_mm(row_mm / 2);
+    EXPECT_NEAR(cusp_mm, kRadius_mm - std::sqrt(kRadius_mm * kRadius_mm - row_mm * row_mm / 4), 1e-12);
+    EXPECT_NEAR(cusp_mm, row_mm * row_mm / (8 * kRadius_mm), 1e-3 * cusp_mm);
+  }
+  EXPECT_DOUBLE_EQ(profile.largest_radius_mm(), 5);
+}
+
+/// A barrel's flank: 5 mm from the axis at the thickest place, and by the sagitta of its arc less elsewhere.
+TEST(Profile, OfABarrelFollowsItsFlank) {
+  const Profile profile(machine::parameters_of(barrel()));
+  for (const double below_mm : {0.0, 1.0, 4.0, 9.0}) {
+    const double s = profile.length_to_height_mm(10 - below_mm);
+    EXPECT_NEAR(profile.at(s).radius_mm, 5 - (85 - std::sqrt(85.0 * 85 - below_mm * below_mm)), 1e-9) << below_mm;
+    EXPECT_NEAR(profile.at(s).meridian_curvature_per_mm,
+                below_mm > 0 ? 1.0 / 85 : profile.at(s).meridian_curvature_per_mm, 1e-12);
+  }
 }
 
 TEST(Profile, SaysWhatDoesNotClose) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "tests/kinematics/machines.h"
 #include "tests/repath/five_axis_program.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::repath {
 namespace {
@@ -64,11 +64,8 @@ double commanded_s(const Read& r, const machine::Machine& machine) {
 
 std::vector<std::string> five_axis_programs() {
   std::vector<std::string> out;
-  const std::string folder = CAMBER_SHARED_DATA_DIR "/linuxcnc5/programs";
-  if (!std::filesystem::exists(folder)) return out;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".ngc") out.push_back(entry.path());
-  std::sort(out.begin(), out.end());
+  for (const std::string& path : tests::data_files("linuxcnc5/programs"))
+    if (path.ends_with(".ngc")) out.push_back(path);
   return out;
 }
 
@@ -174,7 +171,7 @@ TEST(Post, FollowsArcs) {
 /// Joints with four decimals, back with three: the numbers of the program.
 TEST(Post, ThereAndBackGivesTheSamePosesOnRealPrograms) {
   auto programs = five_axis_programs();
-  if (programs.empty()) GTEST_SKIP() << "programs of linuxcnc5 are not there";
+  ASSERT_FALSE(programs.empty());
   programs.emplace_back(CAMBER_SOURCE_DIR "/samples/12-five-axis/dome.nc");
   Diagnostics diagnostics;
   const machine::Machine dome =
@@ -183,7 +180,8 @@ TEST(Post, ThereAndBackGivesTheSamePosesOnRealPrograms) {
   for (const std::string& path : programs) {
     SCOPED_TRACE(path);
     const machine::Machine& machine = path.ends_with("dome.nc") ? dome : linuxcnc;
-    const Read given = read_five_axes(tests::file_text(path), machine);
+    const Read given =
+        read_five_axes(tests::file_text(tests::data_path("linuxcnc5/programs/tcp_singular_g64.ngc")), machine);
     const bool to_joints = std::any_of(given.moves.states.begin(), given.moves.states.end(),
                                        [](const auto& s) { return s.tip_control != nc::TipControl::off; });
     const PostTarget there = to_joints ? PostTarget::joints : PostTarget::tcp,
@@ -237,10 +235,9 @@ TEST(Post, ThereAndBackGivesTheSamePosesOnRealPrograms) {
 
 /// Over the pole: a third of the blocks of the one-degree rule, and within the tolerance.
 TEST(Post, NeedsFewerBlocksThanTheOneDegreeRuleThroughThePole) {
-  const std::string path = CAMBER_SHARED_DATA_DIR "/linuxcnc5/programs/tcp_singular_g64.ngc";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const machine::Machine machine = sample("table_ac_linuxcnc");
-  const Read given = read_five_axes(tests::file_text(path), machine);
+  const Read given =
+      read_five_axes(tests::file_text(tests::data_path("linuxcnc5/programs/tcp_singular_g64.ngc")), machine);
   const Posted ours = posted(given, machine), rule = posted(given, machine, {.one_degree = true});
   EXPECT_LE(2 * ours.feed_blocks, ours.one_degree_blocks);
   EXPECT_EQ(rule.feed_blocks, ours.one_degree_blocks);

@@ -20,15 +20,16 @@ TEST(VerdictText, JudgesTheEmittedProgramAndNamesTheCauses) {
   EXPECT_TRUE(v.reasons.empty());
   c.within_tolerance = false;
   c.after_um.p95 = 11.3;
-  c.causes = {{compensate::Cause::bow, 4.1, {12, 14}}};
+  c.causes = {
+      {.cause = compensate::Cause::bow, .rms_um = 4.1, .lines = {{12, 12}, {14, 15}}, .remedies = {"a shorter tool"}}};
   v = verdict_text(c, asked);
   EXPECT_FALSE(v.success);
   EXPECT_EQ(v.headline,
             "over the tolerance: the form error of the emitted program is 11.30 um (95th percentile), tolerance_um = "
             "5");
   EXPECT_EQ(v.reasons, (std::vector<std::string>{
-                           "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14; a "
-                           "second cut (lever \"passes\"), a shorter tool or a lower feed would remove it"}));
+                           "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14 (15 as emitted); "
+                           "a shorter tool would remove it"}));
 }
 
 TEST(VerdictText, IsOnTheBandOrTheDeflectionWhereTheJobAsksForIt) {

@@ -1,27 +1,22 @@
-// Programs of real CAM systems and controls, where the shared data lie beside the project.
+// Programs of real CAM systems and controls.
 #include "nc/interpreter.h"
 #include "nc/summary.h"
-#include "test_paths.h"
 #include "tests/nc/nc_text.h"
+#include "tests/support/test_data.h"
 
 namespace camber::nc {
 namespace {
 
 using Messages = std::vector<std::string>;
 
-/// What is said of a shared program; file names without their folder.
-Messages said_of(const std::string& path, const InterpreterOptions& options = {}) {
-  const std::string name = path.substr(path.rfind('/') + 1);
-  return read_text(SourceText::read(path).text(), options, name).messages;
+/// What is said of a program of tests/data; file names without their folder.
+Messages said_of(const std::string& data, const InterpreterOptions& options = {}) {
+  const std::string name = data.substr(data.rfind('/') + 1);
+  return read_text(SourceText::read(tests::data_path(data)).text(), options, name).messages;
 }
 
-#define CAMBER_SHARED_OR_SKIP(variable, name)     \
-  const std::string variable = shared_file(name); \
-  if (variable.empty()) GTEST_SKIP() << "no shared data: " << CAMBER_SHARED_DATA_DIR << "/" << name
-
-TEST(SharedPrograms, BoxOp5ReadsWithoutAWord) {
-  CAMBER_SHARED_OR_SKIP(path, "nist/box_op5.nc");
-  const Read r = read_text(SourceText::read(path).text(), {});
+TEST(CamPrograms, BoxOp5ReadsWithoutAWord) {
+  const Read r = read_text(SourceText::read(tests::data_path("nist/box_op5.nc")).text(), {});
   EXPECT_EQ(r.messages, Messages{});
   const Summary s = summarize(r.program, r.moves);
   EXPECT_EQ(s.blocks, 18767u);
@@ -33,65 +28,61 @@ TEST(SharedPrograms, BoxOp5ReadsWithoutAWord) {
   EXPECT_EQ(ball->line, 11085u);
 }
 
-TEST(SharedPrograms, LinuxCncProgramsReadWithoutAWord) {
-  const auto files = shared_files("linuxcnc/programs");
-  if (files.empty()) GTEST_SKIP() << "no shared data at " << CAMBER_SHARED_DATA_DIR;
-  for (const auto& f : files) {
+TEST(CamPrograms, LinuxCncProgramsReadWithoutAWord) {
+  int programs = 0;
+  for (const auto& f : tests::data_files("linuxcnc/programs")) {
     if (!f.ends_with(".ngc")) continue;
-    EXPECT_EQ(said_of(f), Messages{}) << f;
+    EXPECT_EQ(read_text(SourceText::read(f).text()).messages, Messages{}) << f;
+    ++programs;
   }
+  EXPECT_GT(programs, 0);
 }
 
-TEST(SharedPrograms, NistAndFusionProgramsReadWithoutAWord) {
-  CAMBER_SHARED_OR_SKIP(path, "nc/nist_plate_5.nc");
-  EXPECT_EQ(said_of(path), Messages{});
-  EXPECT_EQ(said_of(shared_file("nc/nist_cover.nc")), Messages{});
-  EXPECT_EQ(said_of(shared_file("nc/fusion_parallel_ball_inch.nc")), Messages{});
+TEST(CamPrograms, NistAndFusionProgramsReadWithoutAWord) {
+  EXPECT_EQ(said_of("nc/nist_plate_5.nc"), Messages{});
+  EXPECT_EQ(said_of("nc/nist_cover.nc"), Messages{});
+  EXPECT_EQ(said_of("nc/fusion_parallel_ball_inch.nc"), Messages{});
 }
 
-TEST(SharedPrograms, ProgramsWithoutAUnitNeedOne) {
-  CAMBER_SHARED_OR_SKIP(path, "nc/maestro_contour_R.nc");
-  EXPECT_EQ(said_of(path),
+TEST(CamPrograms, ProgramsWithoutAUnitNeedOne) {
+  EXPECT_EQ(said_of("nc/maestro_contour_R.nc"),
             Messages{"maestro_contour_R.nc:7:1: warning: the program has moves before G20 or G21 says which unit it "
                      "is in; millimetres are assumed [unit-missing]"});
   for (const char* name : {"nc/maestro_contour_R.nc", "nc/maestro_g91.nc", "nc/maestro_helix_full_turns.nc"})
-    EXPECT_EQ(said_of(shared_file(name), {.inch = false}), Messages{}) << name;
+    EXPECT_EQ(said_of(name, {.inch = false}), Messages{}) << name;
 }
 
-TEST(SharedPrograms, AbsoluteCentresAreNoticed) {
-  CAMBER_SHARED_OR_SKIP(path, "nc/bottle_helix_arcs.nc");
+TEST(CamPrograms, AbsoluteCentresAreNoticed) {
   EXPECT_EQ(
-      said_of(path, {.inch = false}),
+      said_of("nc/bottle_helix_arcs.nc", {.inch = false}),
       Messages{
           "bottle_helix_arcs.nc:12:1: warning: the 2051 arcs of the program fit with absolute centres only; G90.1 is "
           "assumed [arc-centre]"});
 }
 
-TEST(SharedPrograms, HaasDrillingReadsWithAWarning) {
-  CAMBER_SHARED_OR_SKIP(path, "nc/gpr_haas_sample.ncf");
-  EXPECT_EQ(said_of(path, {.inch = true}),
+TEST(CamPrograms, HaasDrillingReadsWithAWarning) {
+  EXPECT_EQ(said_of("nc/gpr_haas_sample.ncf", {.inch = true}),
             Messages{"gpr_haas_sample.ncf:9:23: warning: P has no number; it is taken as P0 [no-number]"});
 }
 
-TEST(SharedPrograms, WhatIsNotReadSaysSo) {
-  CAMBER_SHARED_OR_SKIP(path, "nc/elmoe_keychain_840d.mpf");
-  EXPECT_EQ(said_of(path),
+TEST(CamPrograms, WhatIsNotReadSaysSo) {
+  EXPECT_EQ(said_of("nc/elmoe_keychain_840d.mpf"),
             Messages{"elmoe_keychain_840d.mpf:3:5: error: DEF belongs to a Siemens Sinumerik program, which is not "
                      "supported; Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
   EXPECT_EQ(
-      said_of(shared_file("nc/gpr_mazak_sample.eia")),
+      said_of("nc/gpr_mazak_sample.eia"),
       (Messages{"gpr_mazak_sample.eia:2:1: error: G53.5 is not a G code that Camber knows [unknown-g]",
                 "gpr_mazak_sample.eia:3:1: error: G122.1 (radius or diameter of X on a mill-turn machine) belongs to a "
                 "turning program; milling programs are read [turning]"}));
   EXPECT_EQ(
-      said_of(shared_file("nc/gpr_camaster_vectric.tap"), {.inch = true}),
+      said_of("nc/gpr_camaster_vectric.tap", {.inch = true}),
       (Messages{"gpr_camaster_vectric.tap:29:6: error: X has no number; a number was expected (and 3 more like it) "
                 "[no-number]",
                 "gpr_camaster_vectric.tap:30:6: error: Z has no number; a number was expected (and 3 more like it) "
                 "[no-number]",
                 "gpr_camaster_vectric.tap:20:2: warning: the program selects tools (T) but never changes one; M6 was "
                 "expected, all moves count as tool 0 [tool-not-changed]"}));
-  for (const auto& m : said_of(shared_file("nc/nist_d2mi_904_op1.nc"), {}))
+  for (const auto& m : said_of("nc/nist_d2mi_904_op1.nc", {}))
     // G10 L2 takes its numbers from variables; its G41 has D numbers that only the operator knows.
     EXPECT_TRUE(m.find("[variable]") != std::string::npos || m.find("[not-read]") != std::string::npos ||
                 m.find("[work-offset]") != std::string::npos || m.find("[radius-unknown]") != std::string::npos)

@@ -1,0 +1,235 @@
+#include "calib/place_trace.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/cancel.h"
+
+namespace camber::calib {
+namespace {
+
+using feedmodel::PathPlace;
+
+constexpr double kNearStartMm = 0.5;   // a start is looked for within this distance of the path
+constexpr double kAheadMm = 0.5;       // how far ahead of the axes' way a place is looked for
+constexpr double kAheadFactor = 1.3;   // times that way: corners are cut
+constexpr double kDetour = 0.05;       // what a millimetre along the path counts beside one off it
+constexpr double kStillMm = 2e-3;      // from sample to sample
+constexpr double kMaxOffPathMm = 0.5;  // of 19 in 20 samples
+constexpr double kLostMm = 5.0;        // a start from which a sample is this far off is wrong
+constexpr std::size_t kTrialSamples = 400;
+constexpr std::size_t kMaxStarts = 4000;
+constexpr double kSameExtentMm = 1.0;
+constexpr double kMinEndSpeed = 0.1;  // of the piece's mean: slower, the time of its end is not known well
+
+bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc; }
+
+const Vec3& position(const ServoTrace& trace, std::size_t k) {
+  return trace.has_actual == std::array<bool, 3>{true, true, true} ? trace.actual_mm[k] : trace.command_mm[k];
+}
+
+class Follower {
+ public:
+  Follower(const ServoTrace& trace, const nc::Interpretation& program, const Vec3& offset_mm)
+      : trace_(trace), program_(program), offset_mm_(offset_mm) {
+    for (const nc::Move& move : program.moves) length_mm_.push_back(move.reference ? 0 : nc::length_mm(program, move));
+  }
+
+  Vec3 at(std::size_t k) const { return position(trace_, k) + offset_mm_; }
+
+  /// All moves that pass near a point: the nearest place of each.
+  std::vector<PathPlace> starts(const Vec3& point_mm) const {
+    std::vector<PathPlace> found;
+    for (std::uint32_t m = 0; m < program_.moves.size() && found.size() < kMaxStarts; ++m) {
+      if (program_.moves[m].reference || program_.moves[m].kind == nc::MoveKind::dwell) continue;
+      const PathPlace place = feedmodel::closest_on_move(program_, m, point_mm, 0, 1);
+      if (place.distance_mm < kNearStartMm) found.push_back(place);
+    }
+    return found;
+  }
+
+  /// The place of the next sample, after the axes went `went_mm`.
+  PathPlace next(const PathPlace& from, const Vec3& point_mm, double went_mm) const {
+    PathPlace best;
+    double least = std::numeric_limits<double>::infinity(), passed_mm = -from.u * length_mm_[from.move];
+    const double most_mm = kAheadMm + kAheadFactor * went_mm;
+    for (std::uint32_t m = from.move; m < program_.moves.size(); ++m) {
+      if (!program_.moves[m].reference && program_.moves[m].kind != nc::MoveKind::dwell) {
+        const PathPlace here = feedmodel::closest_on_move(program_, m, point_mm, m == from.move ? from.u : 0.0, 1);
+        const double way_mm = passed_mm + here.u * length_mm_[m];
+        const double score = here.distance_mm + kDetour * std::abs(way_mm - went_mm);
+        if (score < least) {
+          least = score;
+          best = here;
+        }
+      }
+      passed_mm += length_mm_[m];
+      // The way to or from a reference point is not known; the axes may be anywhere after it.
+      if (passed_mm > most_mm && !program_.moves[m].reference) break;
+    }
+    return std::isfinite(least) ? best : from;
+  }
+
+  /// Follows the samples from `first` on; returns the mean of the distances, infinite where they lead away.
+  double follow(PathPlace place, std::size_t first, std::size_t end, std::vector<PathPlace>* out) const {
+    double sum = 0;
+    for (std::size_t k = first; k < end; ++k) {
+      if (k > first) place = next(place, at(k), (at(k) - at(k - 1)).norm());
+      if (!out && place.distance_mm > kLostMm) return std::numeric_limits<double>::infinity();
+      sum += place.distance_mm;
+      if (out) out->push_back(place);
+    }
+    return sum / static_cast<double>(end - first);
+  }
+
+ private:
+  const ServoTrace& trace_;
+  const nc::Interpretation& program_;
+  Vec3 offset_mm_;
+  std::vector<double> length_mm_;
+};
+
+std::size_t first_motion(const ServoTrace& trace) {
+  for (std::size_t k = 1; k < trace.size(); ++k)
+    if ((position(trace, k) - position(trace, k - 1)).norm() > kStillMm) return k - 1;
+  return 0;
+}
+
+struct Extent {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void add(const Vec3& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+};
+
+/// What takes the extent of the trace to that of the moves, where their sizes agree.
+std::optional<Vec3> offset_of_extents(const ServoTrace& trace, const nc::Interpretation& program, bool with_rapids) {
+  Extent of_trace, of_program;
+  for (std::size_t k = 0; k < trace.size(); ++k) of_trace.add(position(trace, k));
+  for (const nc::Move& move : program.moves) {
+    if (move.reference || (!with_rapids && !is_feed(move))) continue;
+    for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) of_program.add(nc::point_at(program, move, u));
+  }
+  const Vec3 size = (of_trace.high - of_trace.low) - (of_program.high - of_program.low);
+  if (!(size.cwiseAbs().maxCoeff() < kSameExtentMm)) return std::nullopt;
+  return (of_program.low + of_program.high) / 2 - (of_trace.low + of_trace.high) / 2;
+}
+
+std::optional<PlacedTrace> placed_with(const ServoTrace& trace, const nc::Interpretation& program,
+                                       const Vec3& offset_mm) {
+  const Follower follower(trace, program, offset_mm);
+  const std::size_t first = first_motion(trace), trial = std::min(trace.size(), first + kTrialSamples);
+  PathPlace start;
+  double least = std::numeric_limits<double>::infinity();
+  for (const PathPlace& candidate : follower.starts(follower.at(first))) {
+    cancellation_point();
+    const double mean = follower.follow(candidate, first, trial, nullptr);
+    if (mean >= least) continue;
+    least = mean;
+    start = candidate;
+  }
+  if (!std::isfinite(least)) return std::nullopt;
+  PlacedTrace placed;
+  placed.offset_mm = offset_mm;
+  placed.place.assign(first, start);
+  follower.follow(start, first, trace.size(), &placed.place);
+  std::vector<double> off;
+  for (const PathPlace& p : placed.place) off.push_back(p.distance_mm);
+  const auto p95 = off.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(off.size() - 1));
+  std::ranges::nth_element(off, p95);
+  placed.off_path_p95_mm = *p95;
+  if (*p95 > kMaxOffPathMm) return std::nullopt;
+  return placed;
+}
+
+}  // namespace
+
+std::optional<PlacedTrace> place_on_path(const ServoTrace& trace, const nc::Interpretation& program) {
+  if (program.moves.empty() || trace.size() < 2) return std::nullopt;
+  if (auto placed = placed_with(trace, program, Vec3::Zero())) return placed;
+  for (const bool with_rapids : {true, false})
+    if (const auto offset = offset_of_extents(trace, program, with_rapids))
+      if (auto placed = placed_with(trace, program, *offset)) return placed;
+  return std::nullopt;
+}
+
+void set_lines(ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed) {
+  trace.line.assign(trace.size(), 0);
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    const std::size_t before = k > 0 ? k - 1 : k, after = std::min(k + 1, trace.size() - 1);
+    const bool moves = (position(trace, after) - position(trace, before)).norm() > kStillMm;
+    if (moves) trace.line[k] = program.moves[placed.place[k].move].block + 1;
+  }
+}
+
+namespace {
+
+/// Time and speed at the end of each move, where the trace passes it; NaN elsewhere.
+struct Passages {
+  std::vector<double> t_s, speed_mm_per_s;
+};
+
+Passages passages_of(const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed) {
+  std::vector<double> from_mm{0.0};  // of each move, along the path
+  for (const nc::Move& move : program.moves)
+    from_mm.push_back(from_mm.back() + (move.reference ? 0 : nc::length_mm(program, move)));
+  const auto along = [&](const PathPlace& p) {
+    return from_mm[p.move] + p.u * (from_mm[p.move + 1] - from_mm[p.move]);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Passages out{std::vector<double>(program.moves.size(), nan), std::vector<double>(program.moves.size(), 0)};
+  for (const Stretch& s : trace.stretches) {
+    for (std::size_t k = s.first + 1; k < s.end; ++k) {
+      const double a = along(placed.place[k - 1]), b = along(placed.place[k]);
+      if (b <= a) continue;
+      const double speed = (b - a) / (trace.t_s[k] - trace.t_s[k - 1]);
+      for (std::uint32_t m = placed.place[k - 1].move; m < placed.place[k].move + 1U; ++m) {
+        const double end = from_mm[m + 1];
+        if (end < a || end >= b) continue;
+        out.t_s[m] = trace.t_s[k - 1] + (end - a) / speed;
+        out.speed_mm_per_s[m] = speed;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<TimedStretch> placed_stretches(
+    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, double piece_s,
+    const std::function<std::optional<double>(double from_s, double to_s)>& override_between) {
+  const Passages passages = passages_of(trace, program, placed);
+  // A place is known to a fraction of a sample where the axes keep their speed.
+  const double sigma_s = trace.period_s / 4;
+  std::vector<TimedStretch> out;
+  for (const FeedStretch& whole : feed_stretches(program)) {
+    std::optional<std::size_t> from;  // the piece begins at the end of this move
+    for (std::size_t m = whole.move_first; m < whole.move_end; ++m) {
+      if (std::isnan(passages.t_s[m])) {
+        from.reset();
+        continue;
+      }
+      const nc::Move& move = program.moves[m];
+      const bool line_ends = m + 1 == program.moves.size() || program.moves[m + 1].block != move.block;
+      if (!line_ends) continue;
+      if (!from) {
+        from = m;
+        continue;
+      }
+      const double time_s = passages.t_s[m] - passages.t_s[*from];
+      if (time_s < piece_s) continue;
+      FeedStretch piece = piece_of(whole, program, *from + 1, m + 1);
+      const double mean = programmed_length_mm(piece, program) / time_s;
+      if (passages.speed_mm_per_s[m] < kMinEndSpeed * mean) continue;
+      const auto feed = override_between ? override_between(passages.t_s[*from], passages.t_s[m]) : 1.0;
+      if (feed) out.push_back({piece, time_s, sigma_s, *feed});
+      from = m;
+    }
+  }
+  return out;
+}
+
+}  // namespace camber::calib

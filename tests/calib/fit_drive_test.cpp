@@ -1,0 +1,137 @@
+// The servo of an axis from its commands: drives integrated here in small steps, by their equation alone.
+#include "calib/fit_drive.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace camber::calib {
+namespace {
+
+struct TrueDrive {
+  double gain = 30, lag_s = 0, feed_forward = 0, acceleration_s = 0, dead_time_s = 0, backlash = 0;
+};
+
+/// Ramps, reversals and rests at several speeds.
+std::vector<double> commands(double period_s) {
+  std::vector<double> c;
+  double at = 0, speed = 0;
+  const double acceleration = 700;
+  const double targets[] = {40, -25, 0, 80, 10, -70, 0, 5, 0, -60, 30, 0, 90, -90, 0};
+  for (int round = 0; round < 2; ++round)
+    for (const double target : targets) {
+      for (double t = 0; t < 0.35; t += period_s) {
+        const double step = acceleration * period_s;
+        speed += std::clamp(target - speed, -step, step);
+        at += speed * period_s;
+        c.push_back(std::round(at * 1e4) / 1e4);
+      }
+    }
+  return c;
+}
+
+/// Tv x'' + x' = Kp (c - x) + F c' + Ka c'' in steps of 10 us; the command runs straight between samples.
+ServoTrace followed(const TrueDrive& d, double noise_mm = 0, int every = 1) {
+  const std::vector<double> command = commands(0.001);
+  constexpr int kSteps = 100;
+  constexpr double h = 0.001 / kSteps;
+  const auto delay = static_cast<std::size_t>(std::lround(d.dead_time_s / h));
+  std::vector<double> fine;
+  for (std::size_t k = 1; k < command.size(); ++k)
+    for (int i = 0; i < kSteps; ++i) fine.push_back(command[k - 1] + (command[k] - command[k - 1]) * i / kSteps);
+  ServoTrace t;
+  t.has_command = t.has_actual = {true, true, true};
+  double x = 0, v = 0, load = 0, last_speed = 0;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, noise_mm > 0 ? noise_mm : 1);
+  for (std::size_t n = 0; n < fine.size(); ++n) {
+    if (n % (kSteps * static_cast<std::size_t>(every)) == 0) {
+      t.t_s.push_back(static_cast<double>(n) * h);
+      t.command_mm.emplace_back(fine[n], 0, 0);
+      const double seen = load + (noise_mm > 0 ? noise(random) : 0);
+      t.actual_mm.emplace_back(std::round(seen * 1e4) / 1e4, 0, 0);
+    }
+    const double c = n > delay ? fine[n - delay] : 0, c_before = n > delay + 1 ? fine[n - delay - 1] : 0;
+    const double speed = (c - c_before) / h, acceleration = (speed - last_speed) / h;
+    last_speed = speed;
+    const double wanted = d.gain * (c - x) + d.feed_forward * speed + d.acceleration_s * acceleration;
+    v = d.lag_s > 0 ? v + (wanted - v) * h / d.lag_s : wanted;
+    x += v * h;
+    load = std::clamp(load, x - d.backlash / 2, x + d.backlash / 2);
+  }
+  set_stretches(t);
+  return t;
+}
+
+DriveFit fit(const ServoTrace& trace) { return fit_drive({&trace}, 0, {}); }
+
+void expect(const FittedValue& value, double truth, double fraction) {
+  EXPECT_NEAR(value.value, truth, fraction * truth);
+  EXPECT_LT(value.std_error, 0.1 * truth);
+  EXPECT_LT(std::abs(value.value - truth), 3 * value.std_error + 1e-9);
+}
+
+TEST(FitDrive, FindsFeedForwardBesideGainAndLag) {
+  const DriveFit d = fit(followed({.gain = 31, .lag_s = 0.0035, .feed_forward = 0.5}));
+  expect(d.gain_per_s, 31, 0.02);
+  expect(d.velocity_lag_s, 0.0035, 0.02);
+  expect(d.feed_forward_percent, 50, 0.02);
+  EXPECT_LT(d.held_out_rms_mm, 0.0005);
+}
+
+TEST(FitDrive, FindsFeedForwardWithoutLag) {
+  const DriveFit d = fit(followed({.gain = 45, .feed_forward = 0.8}));
+  expect(d.gain_per_s, 45, 0.02);
+  expect(d.feed_forward_percent, 80, 0.02);
+}
+
+TEST(FitDrive, FindsDeadTime) {
+  const DriveFit d = fit(followed({.gain = 40, .lag_s = 0.002, .dead_time_s = 0.004}));
+  expect(d.gain_per_s, 40, 0.03);
+  EXPECT_NEAR(d.dead_time_s.value + d.velocity_lag_s.value, 0.006, 0.0006);
+}
+
+TEST(FitDrive, FindsAccelerationFeedForward) {
+  const DriveFit d = fit(followed({.gain = 35, .lag_s = 0.005, .feed_forward = 0.9, .acceleration_s = 0.003}));
+  expect(d.gain_per_s, 35, 0.03);
+  expect(d.feed_forward_percent, 90, 0.02);
+  expect(d.acceleration_feed_forward_s, 0.003, 0.1);
+}
+
+TEST(FitDrive, FindsBacklashOfTheLoad) {
+  const DriveFit d = fit(followed({.gain = 33, .lag_s = 0.003, .backlash = 0.012}));
+  expect(d.gain_per_s, 33, 0.03);
+  expect(d.backlash, 0.012, 0.1);
+}
+
+/// A log of every fourth sample, with the noise of an encoder.
+TEST(FitDrive, TakesCoarseAndNoisyLogs) {
+  const DriveFit d =
+      fit(followed({.gain = 31, .lag_s = 0.0035, .feed_forward = 0.5}, /*noise_mm=*/0.0005, /*every=*/4));
+  EXPECT_NEAR(d.gain_per_s.value, 31, 3);
+  EXPECT_NEAR(d.feed_forward_percent.value, 50, 5);
+}
+
+TEST(FitDrive, SaysThatAnAxisAtRestTellsNothing) {
+  ServoTrace trace = followed({});
+  for (std::size_t k = 0; k < trace.size(); ++k) trace.command_mm[k] = trace.actual_mm[k] = Vec3::Zero();
+  EXPECT_FALSE(fit(trace).moved);
+}
+
+/// At one speed for long the lag alone shows: gain / (1 - feed forward) is known, neither of both.
+TEST(FitDrive, SaysWhatASteadySpeedDoesNotTell) {
+  ServoTrace t;
+  t.has_command = t.has_actual = {true, true, true};
+  for (int k = 0; k < 4000; ++k) {
+    t.t_s.push_back(0.001 * k);
+    t.command_mm.emplace_back(0.02 * k, 0, 0);
+    t.actual_mm.emplace_back(0.02 * k - 20 * 0.016, 0, 0);
+  }
+  set_stretches(t);
+  const DriveFit d = fit(t);
+  EXPECT_FALSE(is_determined(d.feed_forward_percent));
+}
+
+}  // namespace
+}  // namespace camber::calib

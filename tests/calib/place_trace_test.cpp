@@ -1,0 +1,102 @@
+// Traces without lines, and pieces of runs, on the path of their program.
+#include "calib/place_trace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calib/feed_accuracy.h"
+#include "tests/support/feed_runs.h"
+#include "tests/support/synthetic_control.h"
+
+namespace camber::calib {
+namespace {
+
+using tests::known_machine;
+using tests::synthetic_run;
+
+ServoTrace piece_of_trace(const ServoTrace& whole, std::size_t first, std::size_t end, std::size_t every) {
+  ServoTrace t;
+  t.has_command = t.has_actual = {true, true, true};
+  for (std::size_t k = first; k < std::min(end, whole.size()); k += every) {
+    t.t_s.push_back(whole.t_s[k]);
+    t.command_mm.push_back(whole.command_mm[k]);
+    t.actual_mm.push_back(whole.actual_mm[k]);
+  }
+  set_stretches(t);
+  return t;
+}
+
+TEST(PlaceTrace, FindsTheLinesOfAWholeRun) {
+  const FeedRun run = synthetic_run(known_machine());
+  ServoTrace trace = piece_of_trace(run.trace, 0, run.trace.size(), 1);
+  const auto placed = place_on_path(trace, run.program);
+  ASSERT_TRUE(placed);
+  EXPECT_LT(placed->off_path_p95_mm, 0.1);
+  set_lines(trace, run.program, *placed);
+  std::size_t same = 0, told = 0;
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    if (run.trace.line[k] == 0 || trace.line[k] == 0) continue;
+    ++told;
+    // The axes are behind the command.
+    same += trace.line[k] <= run.trace.line[k] && trace.line[k] + 1 >= run.trace.line[k];
+  }
+  EXPECT_GT(static_cast<double>(same), 0.98 * static_cast<double>(told));
+}
+
+/// A spiral of lines, logged seven times a second from somewhere inside it, in machine coordinates.
+class PositionLog : public ::testing::Test {
+ protected:
+  PositionLog() {
+    tests::TestProgram p;
+    p.rapid(10, 0, 5);
+    for (int i = 1; i < 900; ++i) {
+      const double phi = 0.08 * i, r = 10 + 0.4 * phi;
+      p.line(r * std::cos(phi), r * std::sin(phi), 5 - 0.002 * i, 2000);
+    }
+    run_.program = p.program;
+    machine_.axis[0].acceleration_mm_per_s2 = machine_.axis[1].acceleration_mm_per_s2 = 800;
+    machine_.axis[2].acceleration_mm_per_s2 = 800;
+    machine_.control.corner = {.law = machine::CornerLaw::speed_difference, .speed_difference_mm_per_s = 4};
+    run_ = tests::traced_run(p.program, machine_, {});
+  }
+  machine::Machine machine_;
+  FeedRun run_;
+};
+
+TEST_F(PositionLog, GivesTimesOfPiecesThatThePlanHas) {
+  const ServoTrace log = piece_of_trace(run_.trace, 7001, run_.trace.size() - 5003, 143);
+  const auto placed = place_on_path(log, run_.program);
+  ASSERT_TRUE(placed);
+  const auto pieces = placed_stretches(log, run_.program, *placed, 4.0);
+  ASSERT_GT(pieces.size(), 3u);
+  for (const TimedStretch& piece : pieces) {
+    EXPECT_TRUE(piece.stretch.begins_in_motion());
+    // True: from the first to the last sample of the lines.
+    double first = -1, last = 0;
+    for (std::size_t k = 0; k < run_.trace.size(); ++k)
+      if (run_.trace.line[k] >= piece.stretch.line_first && run_.trace.line[k] <= piece.stretch.line_last) {
+        if (first < 0) first = run_.trace.t_s[k];
+        last = run_.trace.t_s[k];
+      }
+    EXPECT_NEAR(piece.time_s, last - first, 3 * std::sqrt(2.0) * piece.sigma_s) << piece.stretch.line_first;
+  }
+}
+
+TEST_F(PositionLog, IsPlacedInAnotherWorkOffset) {
+  ServoTrace log = piece_of_trace(run_.trace, 0, run_.trace.size(), 20);
+  for (Vec3& p : log.actual_mm) p += Vec3(-240, 31, 77);
+  const auto placed = place_on_path(log, run_.program);
+  ASSERT_TRUE(placed);
+  EXPECT_NEAR(placed->offset_mm.x(), 240, 0.1);
+}
+
+TEST_F(PositionLog, OfAnotherProgramIsNotPlaced) {
+  tests::TestProgram other;
+  for (int i = 1; i < 50; ++i) other.line(3.0 * i, i % 2 * 4.0, 0, 1000);
+  const ServoTrace log = piece_of_trace(run_.trace, 0, run_.trace.size(), 20);
+  EXPECT_FALSE(place_on_path(log, other.program));
+}
+
+}  // namespace
+}  // namespace camber::calib
