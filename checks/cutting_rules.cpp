@@ -81,7 +81,7 @@ void look_at_speed(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 void look_at_depth(const Evidence& e, Diagnostics& diagnostics) {
-  constexpr double kSlot = 0.7;                 // of the diameter, and wider
+  constexpr double kSlot = 0.7;                   // of the diameter, and wider
   constexpr double kDeepSlot = 3, kDeepSide = 8;  // diameters
   constexpr double kFraction = 0.15;              // of the tool's way in material
   if (!e.survey) return;
@@ -127,9 +127,10 @@ void look_at_power(const Evidence& e, Diagnostics& diagnostics) {
     else if (bend > kBroken * work.tool->diameter_mm && simulate::slenderness(*work.tool) <= simulate::kMaxSlenderness)
       diagnostics.add(e.at_move(
           Severity::error, work.deepest_move,
-          fmt::format("T{} would bend by {:.2g} mm under the mean force of its chips, {:.3g} N, and break; a cut that a "
-                      "cutter of {:g} mm with overhang_mm = {:g} stands was expected",
-                      work.number, bend, force, work.tool->diameter_mm, work.tool->overhang_mm),
+          fmt::format(
+              "T{} would bend by {:.2g} mm under the mean force of its chips, {:.3g} N, and break; a cut that a "
+              "cutter of {:g} mm with overhang_mm = {:g} stands was expected",
+              work.number, bend, force, work.tool->diameter_mm, work.tool->overhang_mm),
           "cut-power"));
   }
 }
@@ -146,9 +147,10 @@ void look_at_material(const Evidence& e, Diagnostics& diagnostics) {
   const double force = e.specific_force_MPa;
   if (force <= 0) return;
   if (force < kForce_MPa.least || force > kForce_MPa.greatest)
-    say(fmt::format("[material] {}: the specific cutting force of chips of 0.1 mm is {:.3g} MPa; {:g} (wax) to {:g} MPa "
-                    "was expected (GPa, psi, kgf/mm2?)",
-                    key, force, kForce_MPa.least, kForce_MPa.greatest),
+    say(fmt::format(
+            "[material] {}: the specific cutting force of chips of 0.1 mm is {:.3g} MPa; {:g} (wax) to {:g} MPa "
+            "was expected (GPa, psi, kgf/mm2?)",
+            key, force, kForce_MPa.least, kForce_MPa.greatest),
         Severity::error);
   const double edge = std::max(m.kte_N_per_mm, m.kre_N_per_mm);
   if (edge > 0 && (edge < kEdge_N_per_mm.least || edge > kEdge_N_per_mm.greatest))
@@ -163,9 +165,10 @@ void look_at_material(const Evidence& e, Diagnostics& diagnostics) {
   const auto components = machine::with_law(m.law, [&](auto law) { return decltype(law)::specific_MPa(m, 0.1); });
   const double sideways = std::max(std::abs(components.radial), std::abs(components.axial));
   if (sideways > kSideways * force)
-    say(fmt::format("[material]: the radial or axial force, {:.4g} MPa, is {:.2g} times the tangential one, {:.4g} MPa; "
-                    "up to {:g} times was expected (are all in MPa?)",
-                    sideways, sideways / force, force, kSideways),
+    say(fmt::format(
+            "[material]: the radial or axial force, {:.4g} MPa, is {:.2g} times the tangential one, {:.4g} MPa; "
+            "up to {:g} times was expected (are all in MPa?)",
+            sideways, sideways / force, force, kSideways),
         Severity::warning);
 }
 

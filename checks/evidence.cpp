@@ -12,15 +12,12 @@
 namespace camber::checks {
 namespace {
 
-bool uses_inches(const nc::Interpretation& moves) {
-  return std::ranges::any_of(moves.states, &nc::ModalState::inch);
-}
+bool uses_inches(const nc::Interpretation& moves) { return std::ranges::any_of(moves.states, &nc::ModalState::inch); }
 
 double specific_force(const machine::Material& material) {
   constexpr double kChip_mm = 0.1;
-  return machine::with_law(material.law, [&](auto law) {
-    return decltype(law)::specific_MPa(material, kChip_mm).tangential;
-  });
+  return machine::with_law(material.law,
+                           [&](auto law) { return decltype(law)::specific_MPa(material, kChip_mm).tangential; });
 }
 
 /// Rise of a line over its way across; none of arcs, whose helices are ramps into the material.

@@ -34,20 +34,20 @@ class Spread {
 /// One tool's work in the program.
 struct ToolWork {
   int number = 0;
-  const machine::Tool* tool = nullptr;           ///< of the job
-  const machine::ToolProposal* said = nullptr;   ///< of the program's comments; null: they do not name it
+  const machine::Tool* tool = nullptr;          ///< of the job
+  const machine::ToolProposal* said = nullptr;  ///< of the program's comments; null: they do not name it
   bool mills = false;
-  std::uint32_t first_move = 0;                  ///< that cuts
-  double milling_mm = 0;                         ///< length of its milling moves
-  double level_mm = 0;                           ///< of this, at one height
-  double sloping_mm = 0;                         ///< of this, in lines that rise or fall by 2 to 80 degrees
-  double rising_mm = 0;                          ///< of sloping_mm, upwards
-  std::size_t holes = 0;                         ///< moves that make holes
+  std::uint32_t first_move = 0;  ///< that cuts
+  double milling_mm = 0;         ///< length of its milling moves
+  double level_mm = 0;           ///< of this, at one height
+  double sloping_mm = 0;         ///< of this, in lines that rise or fall by 2 to 80 degrees
+  double rising_mm = 0;          ///< of sloping_mm, upwards
+  std::size_t holes = 0;         ///< moves that make holes
   Spread feed_per_tooth_mm, cutting_speed_m_per_min, spindle_rpm, feed_mm_per_min;  ///< of milling, by length
-  simulate::MoveCut cut;                         ///< sum of its milling moves, where there is a survey
+  simulate::MoveCut cut;  ///< sum of its milling moves, where there is a survey
   std::uint32_t deepest_move = 0;
-  Spread depth_mm;                               ///< height of what each move removes, by length in material
-  Spread power_W;                                ///< for the chips alone, by length in material
+  Spread depth_mm;  ///< height of what each move removes, by length in material
+  Spread power_W;   ///< for the chips alone, by length in material
 };
 
 struct Evidence {
@@ -57,8 +57,8 @@ struct Evidence {
   std::vector<ToolWork> tools;              ///< those that cut, ascending
   std::optional<machine::Box> stock;        ///< where it is not a .vdb
   std::optional<simulate::HeightSurvey> survey;
-  bool elsewhere = false;                   ///< path and stock lie apart, or their units do (simulate::check_places)
-  double specific_force_MPa = 0;            ///< tangential, of chips of 0.1 mm
+  bool elsewhere = false;         ///< path and stock lie apart, or their units do (simulate::check_places)
+  double specific_force_MPa = 0;  ///< tangential, of chips of 0.1 mm
 
   Evidence(const machine::Job& job, const simulate::SimulatedProgram& program);
   /// Of a job whose program is yet to be made: all of its tools.

@@ -97,8 +97,7 @@ std::optional<Vec3> find_shift(const removal::PartMesh& part, const Cutters& cut
       const double c = places[i].clearance_mm;
       if (std::abs(c) > reach) continue;
       Vec3 slope;
-      for (int a = 0; a < 3; ++a)
-        slope[a] = (moved[static_cast<std::size_t>(a)][i].clearance_mm - c) / kStep_mm;
+      for (int a = 0; a < 3; ++a) slope[a] = (moved[static_cast<std::size_t>(a)][i].clearance_mm - c) / kStep_mm;
       const double weight = 1 / (0.1 + std::abs(c));
       normal += weight * slope * slope.transpose();
       right -= weight * c * slope;
@@ -170,7 +169,8 @@ PartFit fit_part(const machine::Job& job, const simulate::SimulatedProgram& prog
   out.cutting_in = gouging_of(out.places, kCutIn_mm);
   out.nearest_mm = quantile(clearances, 0.01);
   constexpr double kClear_mm = 0.3;
-  if (out.gouging > kGouging || out.cutting_in > kCuttingIn || out.nearest_mm > kClear_mm) out.shift_mm = find_shift(part, cutters, out.places);
+  if (out.gouging > kGouging || out.cutting_in > kCuttingIn || out.nearest_mm > kClear_mm)
+    out.shift_mm = find_shift(part, cutters, out.places);
   return out;
 }
 

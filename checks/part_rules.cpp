@@ -33,7 +33,7 @@ void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
   const PartFit fit = fit_part(e.job, e.program, part);
   if (fit.places.empty()) return;
   constexpr double kClear_mm = 0.5;
-  const std::string fits = fit.shift_mm ? fmt::format("; moved by {} they fit", shift_text(*fit.shift_mm)) : "";
+  const std::string fits = fit.shift_mm ? fmt::format("; the part moved by {} fits", shift_text(*fit.shift_mm)) : "";
   const bool shifted = fit.shift_mm && fit.cutting_in > kCuttingIn;
   if (fit.gouging > kGouging || shifted)
     diagnostics.add(e.at_move(
@@ -79,13 +79,14 @@ void look_at_part_in_stock(const Evidence& e, Diagnostics& diagnostics) {
       if (out > most) most = out, where = p;
     }
   if (most <= kOut_mm) return;
-  diagnostics.add(Diagnostic{Severity::warning,
-                             {e.job.part.mesh, 0, 0},
-                             fmt::format("the part rises out of the stock by up to {:.2f} mm, at X{:.2f} Y{:.2f}; a stock "
-                                         "that holds the part was expected",
-                                         most, where.x(), where.y()),
-                             "part-in-stock",
-                             {}});
+  diagnostics.add(
+      Diagnostic{Severity::warning,
+                 {e.job.part.mesh, 0, 0},
+                 fmt::format("the part rises out of the stock by up to {:.2f} mm, at X{:.2f} Y{:.2f}; a stock "
+                             "that holds the part was expected",
+                             most, where.x(), where.y()),
+                 "part-in-stock",
+                 {}});
 }
 
 }  // namespace camber::checks

@@ -22,8 +22,8 @@ struct Rule {
 /// Every rule, in the order in which they look.
 std::span<const Rule> rules();
 
-/// Errors where a result would be meaningless, warnings where something is only odd. Seconds at most: of the program its
-/// moves alone are needed (simulate::read_moves). Throws InputError where stock or part cannot be read.
+/// Errors where a result would be meaningless, warnings where something is only odd. Seconds at most: of the program
+/// its moves alone are needed (simulate::read_moves). Throws InputError where stock or part cannot be read.
 void check_plausibility(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics);
 
 /// The same of a job whose program is yet to be made (copy, resegment --part): its tools, material, stock and part.

@@ -25,12 +25,13 @@ void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
   }
   const double top = e.stock->max_mm.z();
   if (!std::isfinite(highest) || highest >= top - kSame_mm) return;
-  diagnostics.add(e.at_move(Severity::error, where,
-                            fmt::format("the program rises to Z{:g} at most, but the stock's top is at Z{:g}; a program "
-                                        "that comes clear of the stock was expected (is the stock too high, or its zero "
-                                        "another one?)",
-                                        highest, top),
-                            "stock-top"));
+  diagnostics.add(
+      e.at_move(Severity::error, where,
+                fmt::format("the program rises to Z{:g} at most, but the stock's top is at Z{:g}; a program "
+                            "that comes clear of the stock was expected (is the stock too high, or its zero "
+                            "another one?)",
+                            highest, top),
+                "stock-top"));
 }
 
 void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
@@ -39,17 +40,19 @@ void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
   double beside = 0, all = 0;
   for (const ToolWork& work : e.tools) beside += work.cut.beside_mm, all += work.cut.length_mm;
   if (all <= 0 || beside <= kOdd * all) return;
-  const auto first = std::ranges::find_if(e.survey->moves, [](const auto& m) { return m.beside_mm > 0.5 * m.length_mm; });
+  const auto first =
+      std::ranges::find_if(e.survey->moves, [](const auto& m) { return m.beside_mm > 0.5 * m.length_mm; });
   const nc::Extents tips = simulate::tip_extents(e.program.moves, e.program.selected, e.program.holes);
   const Vec3 &lo = e.stock->min_mm, &hi = e.stock->max_mm;
   diagnostics.add(e.at_move(
       beside > kMeaningless * all ? Severity::error : Severity::warning,
       static_cast<std::uint32_t>(first - e.survey->moves.begin()),
-      fmt::format("{:.0f} % of the cutting path runs beside or above the stock: the tip cuts from X{:.2f} Y{:.2f} Z{:.2f} "
-                  "to X{:.2f} Y{:.2f} Z{:.2f}, the stock lies from X{:.2f} Y{:.2f} Z{:.2f} to X{:.2f} Y{:.2f} Z{:.2f}; a "
-                  "stock around the path was expected",
-                  100 * beside / all, tips.min_mm.x(), tips.min_mm.y(), tips.min_mm.z(), tips.max_mm.x(),
-                  tips.max_mm.y(), tips.max_mm.z(), lo.x(), lo.y(), lo.z(), hi.x(), hi.y(), hi.z()),
+      fmt::format(
+          "{:.0f} % of the cutting path runs beside or above the stock: the tip cuts from X{:.2f} Y{:.2f} Z{:.2f} "
+          "to X{:.2f} Y{:.2f} Z{:.2f}, the stock lies from X{:.2f} Y{:.2f} Z{:.2f} to X{:.2f} Y{:.2f} Z{:.2f}; a "
+          "stock around the path was expected",
+          100 * beside / all, tips.min_mm.x(), tips.min_mm.y(), tips.min_mm.z(), tips.max_mm.x(), tips.max_mm.y(),
+          tips.max_mm.z(), lo.x(), lo.y(), lo.z(), hi.x(), hi.y(), hi.z()),
       "stock-place"));
 }
 

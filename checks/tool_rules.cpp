@@ -43,8 +43,8 @@ std::string factor_hint(double job, double comment) {
 std::string other_tool_hint(const Evidence& e, const Tool& tool) {
   constexpr double kNear = 0.02;
   for (const ToolProposal& other : e.said)
-    if (other.number && *other.number != tool.number && other.type && same_kind(tool.type, *other.type) && other.diameter_mm &&
-        near(*other.diameter_mm, tool.diameter_mm, kNear))
+    if (other.number && *other.number != tool.number && other.type && same_kind(tool.type, *other.type) &&
+        other.diameter_mm && near(*other.diameter_mm, tool.diameter_mm, kNear))
       return fmt::format("; it is like T{} there", *other.number);
   return {};
 }
@@ -69,9 +69,10 @@ std::optional<Contradiction> contradiction(const Tool& tool, const ToolProposal&
                            fmt::format("\"{}\"", word(*said.type))};
   }
   if (said.diameter_mm && !near(tool.diameter_mm, *said.diameter_mm, kRounded))
-    return Contradiction{near(tool.diameter_mm, *said.diameter_mm, kOther) ? Severity::warning : grave,
-                         fmt::format("diameter_mm = {:g}", tool.diameter_mm),
-                         fmt::format("{:.4g} mm{}", *said.diameter_mm, factor_hint(tool.diameter_mm, *said.diameter_mm))};
+    return Contradiction{
+        near(tool.diameter_mm, *said.diameter_mm, kOther) ? Severity::warning : grave,
+        fmt::format("diameter_mm = {:g}", tool.diameter_mm),
+        fmt::format("{:.4g} mm{}", *said.diameter_mm, factor_hint(tool.diameter_mm, *said.diameter_mm))};
   if (tool.type == ToolType::bull && said.corner_radius_mm &&
       !near(tool.corner_radius_mm, *said.corner_radius_mm, kCorner))
     return Contradiction{
@@ -107,22 +108,23 @@ void look_at_comments(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 void look_at_overhang(const Evidence& e, Diagnostics& diagnostics) {
-  constexpr double kLongest_mm = 400;         // of any milling tool
+  constexpr double kLongest_mm = 400;          // of any milling tool
   constexpr double kShortest = 1, kWide = 20;  // diameters; mm
   for (const ToolWork& work : e.tools) {
     if (!work.mills) continue;
     const Tool& tool = *work.tool;
     const double slender = simulate::slenderness(tool);
     const auto say = [&](Severity severity, std::string why) {
-      diagnostics.add(e.at_job(severity, fmt::format("T{}: overhang_mm = {:g} is {}", work.number, tool.overhang_mm, why),
-                               "tool-slender"));
+      diagnostics.add(e.at_job(
+          severity, fmt::format("T{}: overhang_mm = {:g} is {}", work.number, tool.overhang_mm, why), "tool-slender"));
     };
     if (tool.overhang_mm > kLongest_mm)
       say(Severity::error, fmt::format("longer than any milling tool; up to {:g} mm was expected", kLongest_mm));
     else if (slender > simulate::kMaxSlenderness)
-      say(Severity::error, fmt::format("{:.1f} times its diameter; no more than {:g} times was expected: a longer tool is "
-                                       "no static beam (diameter_mm and overhang_mm are in mm)",
-                                       slender, simulate::kMaxSlenderness));
+      say(Severity::error,
+          fmt::format("{:.1f} times its diameter; no more than {:g} times was expected: a longer tool is "
+                      "no static beam (diameter_mm and overhang_mm are in mm)",
+                      slender, simulate::kMaxSlenderness));
     else if (tool.diameter_mm <= kWide && tool.overhang_mm < kShortest * tool.diameter_mm)
       say(Severity::warning, fmt::format("less than its diameter, {:g} mm; at least that was expected (holder face to "
                                          "tip)",
@@ -142,10 +144,11 @@ void look_at_proportions(const Evidence& e, Diagnostics& diagnostics) {
     const double d = t.diameter_mm;
     const auto odd = [&](Severity severity, const Usual& u) {
       if (!u.given || !std::isfinite(u.value) || (u.value >= u.least && u.value <= u.greatest)) return;
-      diagnostics.add(e.at_job(
-          severity, fmt::format("T{}: {} = {:g} is not that of a milling cutter of {:g} mm; {:g} to {:g}{} was expected",
-                                work.number, u.key, u.value, d, u.least, u.greatest, u.unit),
-          "tool-proportions"));
+      diagnostics.add(
+          e.at_job(severity,
+                   fmt::format("T{}: {} = {:g} is not that of a milling cutter of {:g} mm; {:g} to {:g}{} was expected",
+                               work.number, u.key, u.value, d, u.least, u.greatest, u.unit),
+                   "tool-proportions"));
     };
     if (d < 0.1 || d > 250)
       diagnostics.add(e.at_job(Severity::error,
@@ -156,12 +159,11 @@ void look_at_proportions(const Evidence& e, Diagnostics& diagnostics) {
     odd(Severity::warning,
         {"flutes", static_cast<double>(t.flutes), 1, std::floor(std::max(6.0, 4 + 0.6 * d)), "", true});
     odd(Severity::error, {"youngs_modulus_GPa", t.youngs_modulus_MPa / 1000, 50, 1200, "", true});
+    odd(Severity::warning, {"root_stiffness_N_per_um", t.root_stiffness_N_per_mm / 1000, 0.5, 1000, " (or inf)", true});
+    odd(Severity::warning, {"flute_length_mm", t.flute_length_mm.value_or(d), 0.1 * d, std::max(12 * d, 10.0), "",
+                            t.flute_length_mm.has_value()});
     odd(Severity::warning,
-        {"root_stiffness_N_per_um", t.root_stiffness_N_per_mm / 1000, 0.5, 1000, " (or inf)", true});
-    odd(Severity::warning,
-        {"flute_length_mm", t.flute_length_mm.value_or(d), 0.1 * d, std::max(12 * d, 10.0), "", t.flute_length_mm.has_value()});
-    odd(Severity::warning, {"shank_diameter_mm", t.shank_diameter_mm, 0.3 * d, std::max(3 * d, 12.0), "",
-                            t.shank_diameter_mm > 0});
+        {"shank_diameter_mm", t.shank_diameter_mm, 0.3 * d, std::max(3 * d, 12.0), "", t.shank_diameter_mm > 0});
     odd(Severity::warning, {"runout_um", 1000 * t.runout_mm, 0, std::max(50.0, 20 * d), "", true});
     odd(Severity::warning, {"effective_diameter_ratio", t.effective_diameter_ratio, 0.4, 1, "", true});
   }
@@ -200,7 +202,7 @@ void look_at_ball(const Evidence& e, const ToolWork& work, Diagnostics& diagnost
 void look_at_path_shape(const Evidence& e, Diagnostics& diagnostics) {
   for (const ToolWork& work : e.tools) {
     const Tool& tool = *work.tool;
-    constexpr double kRounded = 0.2;  // corner over radius from which bull end mills follow surfaces
+    constexpr double kRounded = 0.2;         // corner over radius from which bull end mills follow surfaces
     const bool mills = work.milling_mm > 0;  // along a program's path
     const bool flat = tool.type == ToolType::flat ||
                       (tool.type == ToolType::bull && tool.corner_radius_mm < kRounded * tool.diameter_mm / 2);

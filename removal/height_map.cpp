@@ -108,7 +108,8 @@ std::size_t HeightMap::blocks_per_row() const { return (columns_ + kBlock - 1) /
 HeightMap::Range HeightMap::cells(double from_mm, double to_mm, int axis) const {
   const auto count = static_cast<double>(axis == 0 ? columns_ : rows_);
   // Cells whose centres lie between.
-  const double first = std::ceil((from_mm - lo_[axis]) / cell_ - 0.5), end = std::floor((to_mm - lo_[axis]) / cell_ + 0.5);
+  const double first = std::ceil((from_mm - lo_[axis]) / cell_ - 0.5),
+               end = std::floor((to_mm - lo_[axis]) / cell_ + 0.5);
   const auto from = static_cast<std::size_t>(std::clamp(first, 0.0, count));
   return {from, std::max(from, static_cast<std::size_t>(std::clamp(end, 0.0, count)))};
 }

@@ -48,8 +48,8 @@ struct SurveyTool {
 
   removal::CutterShape shape;
   CutterBottom bottom;
-  std::optional<CutterBottom> smaller;  ///< by the tolerance
-  std::vector<Disc> discs;              ///< each wider than those below it
+  std::optional<CutterBottom> smaller;     ///< by the tolerance
+  std::vector<Disc> discs;                 ///< each wider than those below it
   std::optional<Collision::Part> above{};  ///< what follows the flutes
   double cutter_end_mm;
   bool narrows = false;  ///< some part is narrower than one below it
@@ -63,7 +63,8 @@ class Surveyor {
   }
 
   HeightSurvey run() {
-    HeightSurvey out{.cell_mm = heights_.cell_mm(), .moves = std::vector<MoveCut>(moves().size()), .machined = heights_};
+    HeightSurvey out{
+        .cell_mm = heights_.cell_mm(), .moves = std::vector<MoveCut>(moves().size()), .machined = heights_};
     out.blank_mm3 = heights_.volume_mm3();
     blank_.emplace(heights_);
     if (job_.stock.allowance_mm > 0) out.allowance_mm3 = cut_up_to_allowance();
@@ -115,7 +116,8 @@ class Surveyor {
       const auto tool = tools_.find(target.moves.state_of(target.moves.moves[i]).tool);
       if (tool == tools_.end() || job_.stock.allowance_mm >= tool->second.shape.radius_mm) continue;
       const CutterBottom smaller(tool->second.shape, job_.stock.allowance_mm);
-      along(target.moves, i, smaller, [&](const Vec3& tip, double, double) { removed += heights_.cut(smaller, tip).volume_mm3; });
+      along(target.moves, i, smaller,
+            [&](const Vec3& tip, double, double) { removed += heights_.cut(smaller, tip).volume_mm3; });
     }
     return removed;
   }
@@ -136,8 +138,10 @@ class Surveyor {
       m.length_mm += step;
       m.volume_mm3 += cut.volume_mm3;
       m.area_mm2 += cut.area_mm2;
-      if (cut.deepest_mm > least) m.cutting_mm += step;
-      else if (step > 0 && !blank_->touch(tool->bottom, tip)) m.beside_mm += step;
+      if (cut.deepest_mm > least)
+        m.cutting_mm += step;
+      else if (step > 0 && !blank_->touch(tool->bottom, tip))
+        m.beside_mm += step;
       if (cut.deepest_mm > m.deepest_mm) m.deepest_mm = cut.deepest_mm, m.deepest_place = tip;
       if (cut.deepest_mm > options_.tolerance_mm) m.above_tip_mm = std::max(m.above_tip_mm, cut.above_tip_mm);
       if (program_.selected[i] && cut.deepest_mm > options_.tolerance_mm &&

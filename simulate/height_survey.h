@@ -14,13 +14,13 @@ namespace camber::simulate {
 
 /// What a move does to the stock.
 struct MoveCut {
-  double length_mm = 0;      ///< of the move
-  double cutting_mm = 0;     ///< of this length, where it removes material
-  double beside_mm = 0;      ///< of this length, where the blank never had material for the cutter
-  double volume_mm3 = 0;     ///< removed
-  double area_mm2 = 0;       ///< removed, seen from above
-  double deepest_mm = 0;     ///< largest height of a removed column
-  double above_tip_mm = 0;   ///< highest material removed, above the tip
+  double length_mm = 0;               ///< of the move
+  double cutting_mm = 0;              ///< of this length, where it removes material
+  double beside_mm = 0;               ///< of this length, where the blank never had material for the cutter
+  double volume_mm3 = 0;              ///< removed
+  double area_mm2 = 0;                ///< removed, seen from above
+  double deepest_mm = 0;              ///< largest height of a removed column
+  double above_tip_mm = 0;            ///< highest material removed, above the tip
   Vec3 deepest_place = Vec3::Zero();  ///< of the tip
 };
 
@@ -32,26 +32,26 @@ struct CutAboveFlutes {
 
 struct HeightSurvey {
   double cell_mm = 0;
-  std::vector<MoveCut> moves;                ///< one per move of the program; zero for those that do not cut
-  std::vector<Collision> collisions{};       ///< as find_collisions(); without t_s
+  std::vector<MoveCut> moves;                  ///< one per move of the program; zero for those that do not cut
+  std::vector<Collision> collisions{};         ///< as find_collisions(); without t_s
   std::vector<CutAboveFlutes> above_flutes{};  ///< the first of every block
   double blank_mm3 = 0, removed_mm3 = 0;
-  double allowance_mm3 = 0;      ///< removed before, up to the allowance
+  double allowance_mm3 = 0;         ///< removed before, up to the allowance
   bool starts_in_material = false;  ///< the first milling move begins with its cutter in material
   removal::HeightMap machined;
 };
 
 struct SurveyOptions {
   double cell_mm = 0.1;
-  double tolerance_mm = 0.1;  ///< less depth is no collision
+  double tolerance_mm = 0.1;                 ///< less depth is no collision
   const SimulatedProgram* target = nullptr;  ///< which left the allowance; null: the program
 };
 
 /// Cells that cutters pass over in about a second.
 inline constexpr double kQuickVisits = 5e8;
 /// A cell that is at least `cell_mm` wide and with which a survey of the program visits no more cells than this.
-double quick_cell_mm(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock, double cell_mm,
-                     double max_visits = kQuickVisits);
+double quick_cell_mm(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock,
+                     double cell_mm, double max_visits = kQuickVisits);
 
 /// The job's blank without its allowance. Empty where a height map does not describe it: a .vdb, a mesh with undercuts.
 /// Throws InputError.

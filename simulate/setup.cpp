@@ -17,8 +17,7 @@ namespace camber::simulate {
 
 Programs read_programs(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings) {
   const bool other = !options.program.empty();
-  SimulatedProgram program =
-      read_moves(SourceText::read(other ? options.program : job.program), job, findings.program);
+  SimulatedProgram program = read_moves(SourceText::read(other ? options.program : job.program), job, findings.program);
   if (options.check) options.check(program);
   findings.program.throw_if_errors();
   time_path(program, job, {});
@@ -49,8 +48,9 @@ Programs taken_from(ReadPrograms& read, const SetupOptions& options, const Setup
 Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFindings& findings,
              const TargetWork& work, ReadPrograms* read) {
   Programs programs = read ? taken_from(*read, options, findings) : read_programs(job, options, findings);
-  const bool cleared = options.clearance && check_heights(job, programs.program, programs.original ? &*programs.original : nullptr,
-                                                           findings.target);
+  const bool cleared =
+      options.clearance &&
+      check_heights(job, programs.program, programs.original ? &*programs.original : nullptr, findings.target);
   findings.target.throw_if_errors();
   Target target = make_target(job, programs.of_target(), findings.target, work);
   return {std::move(programs.program), std::move(programs.original), std::move(target), cleared};
@@ -84,10 +84,8 @@ bool check_heights(const machine::Job& job, const SimulatedProgram& program, con
   if (!stock) return false;
   constexpr double kVisits = 3e9;
   const double cell = quick_cell_mm(job, program, *stock, job.simulation.voxel_mm, kVisits);
-  std::optional<HeightSurvey> survey =
-      survey_heights(
-      job, program,
-      {.cell_mm = cell, .tolerance_mm = std::max(cell, job.simulation.voxel_mm), .target = original});
+  std::optional<HeightSurvey> survey = survey_heights(
+      job, program, {.cell_mm = cell, .tolerance_mm = std::max(cell, job.simulation.voxel_mm), .target = original});
   if (!survey) return false;
   if (job.stock.allowance_mm > 0 && survey->allowance_mm3 < nothing_mm3(*survey)) report_allowance(job, diagnostics);
   diagnostics.throw_if_errors();

@@ -50,8 +50,8 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
 
 /// What check_clearance() says, but for the machine's bodies, and whether anything is cut at all ([nothing-removed],
 /// [allowance-too-large]), from a height map of the stock (height_survey.h). False where no height map describes the
-/// job; nothing is said then. Requires a program that is timed. `original`: what the part is judged against, where it is
-/// another program.
+/// job; nothing is said then. Requires a program that is timed. `original`: what the part is judged against, where it
+/// is another program.
 bool check_heights(const machine::Job& job, const SimulatedProgram& program, const SimulatedProgram* original,
                    Diagnostics& diagnostics);
 

@@ -39,14 +39,14 @@ Json range_json(const nc::Range& r) {
 
 Json tool_json(const nc::ToolUse& t) {
   Json out = {{"tool", t.tool},
-          {"line", t.line},
-          {"calls", t.calls},
-          {"cutting_moves", t.cutting_moves},
-          {"cutting_length_mm", t.cutting_length_mm},
-          {"rapid_length_mm", t.rapid_length_mm},
-          {"feed_mm_per_min", range_json(t.feed_mm_per_min)},
-          {"spindle_speed_rpm", range_json(t.spindle_speed_rpm)},
-          {"cutting_extents_mm", extents_json(t.cutting)}};
+              {"line", t.line},
+              {"calls", t.calls},
+              {"cutting_moves", t.cutting_moves},
+              {"cutting_length_mm", t.cutting_length_mm},
+              {"rapid_length_mm", t.rapid_length_mm},
+              {"feed_mm_per_min", range_json(t.feed_mm_per_min)},
+              {"spindle_speed_rpm", range_json(t.spindle_speed_rpm)},
+              {"cutting_extents_mm", extents_json(t.cutting)}};
   if (!t.feed_deg_per_min.empty()) out["feed_deg_per_min"] = range_json(t.feed_deg_per_min);
   return out;
 }
@@ -78,8 +78,7 @@ double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
     Diagnostics of_original;
     const simulate::Programs programs = simulate::read_programs(
         job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics});
-    const double bytes =
-        simulate::check_memory_of(job, programs.of_target(), *stock, diagnostics).total();
+    const double bytes = simulate::check_memory_of(job, programs.of_target(), *stock, diagnostics).total();
     diagnostics.throw_if_errors();
     const simulate::SimulatedProgram& program = programs.program;
     if (simulate::check_heights(job, program, programs.original ? &*programs.original : nullptr, diagnostics)) {
