@@ -18,6 +18,7 @@ namespace {
 using machine::TomlTable;
 
 constexpr std::size_t kNamesShown = 12;
+constexpr double kMaxLine = 4e9;
 constexpr std::size_t kGapsShown = 5;
 constexpr double kInchMm = 25.4;
 
@@ -206,7 +207,7 @@ ServoTrace trace_of(const std::string& path, const std::vector<Channel>& channel
       trace.rotary_actual_deg.emplace_back(v[12], v[13], v[14]);
     }
     if (readers[7]) trace.feed_mm_per_s.push_back(v[7]);
-    if (readers[8]) trace.line.push_back(static_cast<std::uint32_t>(std::max(0L, std::lround(v[8]))));
+    if (readers[8]) trace.line.push_back(static_cast<std::uint32_t>(std::clamp(v[8] + 0.5, 0.0, kMaxLine)));
   }
   if (trace.size() < 2)
     fail_on_file(path,

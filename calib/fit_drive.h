@@ -46,8 +46,8 @@ struct DriveFitOptions {
 /// are left out.
 ///
 /// Standard errors: sandwich over the slices; beside it how far the models differ whose held-out error is less than
-/// one and a half times the best and which determine the number, and a twentieth of the sample distance, for what happens between
-/// samples.
+/// one and a half times the best and which determine the number, and a twentieth of the sample distance, for what
+/// happens between samples.
 DriveFit fit_drive(const std::vector<const ServoTrace*>& traces, int axis, const DriveFitOptions& options);
 
 /// RMS of predicted minus traced position over the traces, all samples, mm.

@@ -25,6 +25,7 @@ using machine::Machine;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 constexpr std::size_t kRestSamples = 20;  // a command that stands for longer rests
+constexpr double kBelowHeld = 0.99;       // of a speed that an axis holds: a limit below it is wrong
 constexpr double kSamePeriod = 0.02;      // two periods that differ by less are one
 constexpr std::uint32_t kMaxBlocksApart = 60;
 constexpr double kSameWindow = 0.3;        // two estimates of one window differ by less than this fraction of it
@@ -160,11 +161,17 @@ void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_e
   // Blocks that overlap have no times of their own.
   const bool overlap =
       machine.control.kind.turning_blocks_overlap && feedmodel::has_rotary_motion(run.program, machine);
+  const std::vector<LineFeed> feeds = overlap ? feeds_of_lines(run.program, machine) : std::vector<LineFeed>{};
+  const auto turns_near = [&](std::uint32_t line) {
+    for (std::uint32_t l = line > 0 ? line - 1 : 0; l <= line + 1; ++l)
+      if (l < feeds.size() && feeds[l].turns) return true;
+    return false;
+  };
   for (const Part& part : parts_of(run.program, machine)) {
     const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
-    const bool by_block =
-        !overlap && part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
+    const bool by_block = part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
+      if (overlap && turns_near(line)) continue;
       blocks.parts.push_back({line, line, part.feed_mm_per_s});
       blocks.kept_back.push_back(kept_back);
       blocks.group.push_back(static_cast<int>(count));
@@ -248,9 +255,9 @@ void add_top_speed(FitFeedResult& result, JointName joint, const TopSpeed& top) 
     return;
   }
   const double start = 60 * (joint.rotary() ? deg_from_rad(limit) : limit);
-  const std::string kept =
-      start < 60 * top.highest ? "the start value is exceeded and was taken out" : "start value kept";
-  if (start < 60 * top.highest) limit = machine::kNoLimit;
+  const bool exceeded = start < kBelowHeld * 60 * top.highest;
+  const std::string kept = exceeded ? "the start value is exceeded and was taken out" : "start value kept";
+  if (exceeded) limit = machine::kNoLimit;
   result.parameters.push_back(
       {name, 60 * (joint.rotary() ? deg_from_rad(limit) : limit), unit, std::nullopt,
        fmt::format("no move shows the axis at its limit (it holds up to {:.0f} {}); {} (run a long rapid of {} alone)",
@@ -388,6 +395,10 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
     if (p.assumed) {
       result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
                                    "usual value: the traces tell it only together with the accelerations", true});
+    } else if (p.together) {
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
+                                   fmt::format("the traces tell it only together with others ({})", what_tells(p.name)),
+                                   true, p.stretches});
     } else if (p.determined) {
       const std::string note = p.from_ramps ? "constant accelerations of the commands" : logged ? source_of(p) : "";
       result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, note, true, p.stretches});
@@ -439,6 +450,8 @@ void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
   std::array<std::optional<FittedValue>, 3> ramps;
   bool any = false, agree = true;
   for (int axis = 0; axis < 3; ++axis) {
+    // Without its acceleration a plan has no ramp that could be compared.
+    if (!std::isfinite(result.machine.axis[axis].acceleration_mm_per_s2)) continue;
     auto& ramp = ramps[static_cast<std::size_t>(axis)] = ramp_time_s(runs, result.machine, axis);
     if (!ramp) continue;
     any = true;

@@ -25,6 +25,7 @@ constexpr double kTimeNoise = 0.001;     // s; a part's time is known to about a
 constexpr double kTimeFraction = 0.002;  // and to this fraction of itself
 constexpr double kLogFraction = 0.003;   // a model's error grows with the time; stretches of a log are long
 constexpr double kUsualArcNormal = 0.87, kUsualArcTangential = 0.5, kUsualStop = 0.5;
+constexpr int kFewestTogether = 3;    // groups of parts that a value must act on to be written at all
 constexpr double kPriorWeight = 0.3;  // of a logarithm: start values count where times tell nothing
 constexpr double kTelling = 0.3;      // of what a part's time is known to, by a change by a factor e
 constexpr double kNoTime = 1e-9;      // s
@@ -356,8 +357,10 @@ bool any_logged(const std::vector<TimedLines>& data) {
 std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged) {
   const auto fraction = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double),
                            double value) {
-    return LimitParameter{
+    LimitParameter p{
         .name = name, .unit = "1", .get = get, .set = set, .least = 0.02, .most = 1, .start = value, .fitted = {}};
+    p.usual = value;
+    return p;
   };
   std::vector<LimitParameter> p;
   p.push_back(acceleration<0>("axis.x.acceleration_mm_per_s2"));
@@ -381,6 +384,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
                  .least = 1e-3,
                  .most = 0.7,
                  .start = 0.05,
+                 .usual = 0.1,
                  .fitted = {}});
   }
   if (differs_by_axis(machine)) {
@@ -497,8 +501,12 @@ LimitFit fit_once(const std::vector<TimedLines>& data, const Machine& start, std
   set_errors(fit, data, start, logs, residuals.size());
 
   const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());
-  for (const LimitParameter& p : fit.parameters)
-    if (p.determined) p.set(fit.machine, p.fitted.value);
+  for (LimitParameter& p : fit.parameters) {
+    // No limit at all would be worse than a value that the times tell only together with others.
+    p.together = !p.determined && p.acts && std::isinf(p.get(start)) && p.stretches >= kFewestTogether &&
+                 p.fitted.std_error < p.fitted.value;
+    if (p.determined || p.together) p.set(fit.machine, p.fitted.value);
+  }
   std::vector<double> milliseconds;
   for (const TimedLines& lines : data) {
     const auto planned = planned_times_s(lines, fitted, feedmodel::plan_motion(*lines.program, fitted).times);
@@ -544,8 +552,9 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
       free.push_back(p);
       continue;
     }
-    p.set(base, p.start);
-    p.fitted = {p.start, INFINITY};
+    p.start = p.usual;
+    p.set(base, p.usual);
+    p.fitted = {p.usual, INFINITY};
     p.assumed = p.acts = true;
   }
   fit = fit_once(data, base, std::move(free), max_iterations, far_away);

@@ -49,12 +49,14 @@ struct LimitParameter {
   double (*get)(const machine::Machine&);
   void (*set)(machine::Machine&, double);
   double least = 0, most = 0, start = 0;
+  double usual = 0;  ///< of a share: what controls have
   FittedValue fitted;
   bool determined = false;  ///< determined by the data
   /// `fitted` was read in the commands of the traces (traced_acceleration.h) and stays.
   bool from_ramps = false;
-  bool acts = false;     ///< it changes some time
-  bool assumed = false;  ///< kept at `start`, since the times tell it only together with others
+  bool acts = false;      ///< it changes some time
+  bool together = false;  ///< written all the same: the start file has no limit, and the times tell it with others
+  bool assumed = false;   ///< kept at `usual`, since the times tell it only together with others
   /// Fraction of its squared derivatives that comes from logged times.
   double logged_fraction = 0;
   int stretches = 0;  ///< groups of parts whose times it changes
@@ -79,7 +81,7 @@ struct LimitFit {
 /// s') (J'J)^-1 over groups, s = J'r of a group, and beside it what a common shift of all traced times by half a period
 /// does, since a trace tells times to a period. far_away: the start values may be wrong by much; a wide loss leads
 /// first. Where blocks overlap, a compass search instead. Shares of accelerations that the times tell only together
-/// with the accelerations are assumed at their start values.
+/// with the accelerations are assumed at their usual values.
 LimitFit fit_limits(const std::vector<TimedLines>& data, const machine::Machine& start,
                     std::vector<LimitParameter> parameters, int max_iterations, bool far_away);
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kGapPeriods = 1.5;  // more than this between two samples is a hole
 constexpr std::size_t kGapsShown = 5;
+constexpr double kMaxLine = 4e9;
 
 /// By Quantity.
 constexpr std::array<std::string_view, kQuantities> kColumnNames = {
@@ -129,7 +130,7 @@ class Reader {
       if (!columns_[i]) continue;
       const std::optional<double> value = parse_number(fields_[i].text);
       const auto column = static_cast<std::size_t>(*columns_[i]);
-      if (!value || !std::isfinite(*value) || (columns_[i] == Quantity::line && *value < 0)) {
+      if (!value || !std::isfinite(*value) || (columns_[i] == Quantity::line && (*value < 0 || *value > kMaxLine))) {
         report(Severity::error, fields_[i],
                fmt::format("{} is \"{}\"; a number is expected", kColumnNames[column], fields_[i].text),
                "trace-number");

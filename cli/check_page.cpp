@@ -14,8 +14,8 @@ report::TextTable tools_of(const std::vector<nc::ToolUse>& tools) {
       "Tools", {"tool", "line", "cutting moves", "feed, mm/min", "spindle, rpm", "cut, mm", "cut Z, mm"}, {}, {}};
   for (const nc::ToolUse& t : tools)
     table.rows.push_back({fmt::format("T{}", t.tool), fmt::format("{}", t.line), fmt::format("{}", t.cutting_moves),
-                          feeds_text(t), range_text(t.spindle_speed_rpm, 0),
-                          fmt::format("{:.1f}", t.cutting_length_mm), cut_depths_text(t)});
+                          feeds_text(t), range_text(t.spindle_speed_rpm, 0), fmt::format("{:.1f}", t.cutting_length_mm),
+                          cut_depths_text(t)});
   return table;
 }
 

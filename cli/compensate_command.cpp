@@ -154,6 +154,7 @@ int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& dia
     const std::string name = api::name_of_program(all.programs, i);
     CompensateArguments own = arguments;
     if (!arguments.dry_run) {
+      make_folder(arguments.output);
       own.output = (std::filesystem::path(arguments.output) / std::filesystem::path(one.program).filename()).string();
       if (std::ranges::find(outputs, own.output) != outputs.end())
         own.output =
@@ -163,7 +164,6 @@ int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& dia
     }
     own.report = own_name(arguments.report, name);
     own.json.clear();
-    if (!arguments.dry_run) make_folder(arguments.output);
     if (!options.quiet) fmt::print("{}{}\n", i > 0 ? "\n" : "", one.program);
     bool emitted = false;
     status = std::max(status, compensate_program(one, i == 0 ? diagnostics : Diagnostics(), own, options,

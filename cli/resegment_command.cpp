@@ -142,13 +142,19 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   again.throw_if_errors();
   const auto measured = repath::measure_deviation(moves, new_moves, result.path.runs, arguments.tolerance_mm);
   const bool unchanged = result.path.runs.empty();
-  const std::string runs = unchanged ? repath::why_unchanged(program, moves, repath::RunKind::with_arcs) : std::string();
+  const std::string runs =
+      unchanged ? repath::why_unchanged(program, moves, repath::RunKind::with_arcs) : std::string();
   const std::string why = !unchanged ? ""
                           : result.tried.empty()
                               ? fmt::format("it is as near to its feed as its blocks allow ({})", runs)
                               : fmt::format("no length of segments is faster ({})", runs);
-  const Report report{figures_of(program, moves), figures_of(new_program, new_moves), before, result,
-                      arguments.tolerance_mm, measured, why};
+  const Report report{figures_of(program, moves),
+                      figures_of(new_program, new_moves),
+                      before,
+                      result,
+                      arguments.tolerance_mm,
+                      measured,
+                      why};
   write_file(arguments.output, result.path.text);
   if (!arguments.json.empty()) write_file(arguments.json, report.json());
   if (!arguments.report.empty()) {

@@ -57,10 +57,11 @@ Loop::Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOp
     : job_(job),
       diagnostics_(diagnostics),
       options_(options),
-      setup_(simulate::set_up(
-          job,
-          {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); }, .clearance = true},
-          {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
+      setup_(
+          simulate::set_up(job,
+                           {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); },
+                            .clearance = true},
+                           {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
       trials_(job_, setup_) {
   simulate::check_clearance(job_, setup_, diagnostics_);
   diagnostics_.throw_if_errors();

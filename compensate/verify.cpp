@@ -187,8 +187,8 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
   const auto check = [&](const simulate::SimulatedProgram& emitted) {
     checks::check_program(job, emitted, diagnostics);
   };
-  const simulate::Setup setup =
-      simulate::set_up(job, {.check = check, .clearance = true}, {.program = diagnostics, .original = of_given, .target = diagnostics});
+  const simulate::Setup setup = simulate::set_up(job, {.check = check, .clearance = true},
+                                                 {.program = diagnostics, .original = of_given, .target = diagnostics});
   simulate::check_clearance(job, setup, diagnostics);
   diagnostics.throw_if_errors();
   const simulate::Prediction p =

@@ -25,7 +25,7 @@ struct OverTarget {
 /// How well an operation's load kept to its target.
 struct LoadFigures {
   static constexpr double kOver = 1.1;  ///< of the target: places with more are named
-  double target_N = 0;  ///< 0: none, feed and depths stay as they are
+  double target_N = 0;                  ///< 0: none, feed and depths stay as they are
   double max_N = 0;
   std::size_t passings = 0;  ///< that cut
   std::size_t counted = 0;   ///< of these, at a feed that the rule chose: not its lowest or highest, not a corner's

@@ -95,7 +95,7 @@ class StaticCut {
   std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this reading and of the previous one, alternating
   std::size_t readings_ = 0;
   int unsettled_in_a_row_ = 0;  ///< readings
-  std::vector<float> swing_;  ///< the deflection a few readings ago
+  std::vector<float> swing_;    ///< the deflection a few readings ago
 };
 
 }  // namespace camber::deflection

@@ -63,7 +63,7 @@ struct Control {
   /// Minimum wait at the stop between rapid and feed moves; 0: no stop.
   double rapid_change_s = 0;
   std::optional<double> least_increment_mm{};  ///< of coordinates in an emitted program; not given: as the program has
-  bool kind_given = false;  ///< [control] dialect; else the default kind
+  bool kind_given = false;                     ///< [control] dialect; else the default kind
   /// Numbers without a decimal point count least increments, not millimetres or inches; not given: not known.
   std::optional<bool> whole_numbers_are_increments{};
   /// In-position width: between rapid and feed moves, and at exact stops (G9, G61.1), the control waits until every

@@ -199,8 +199,9 @@ void read_diameter(const std::string& words, bool inch, ToolProposal& tool) {
 }
 
 void read_corner(const std::string& words, bool inch, ToolProposal& tool) {
-  for (const char* pattern : {R"((?:\bCR\s*=\s*|\bRAD[\s.=-]+|\bRADIUS\s*[=:-]\s*|\bR\s*=\s*)NUM)", R"(NUM\s*RAD(?:IUS)?\b)",
-                              R"(\bD\s?[\d.]+\s?R\s?NUM)", R"(\b(?:BULL|TORUS|TORIC)\w*[ A-Z]*\bR\s?NUM)"})
+  for (const char* pattern :
+       {R"((?:\bCR\s*=\s*|\bRAD[\s.=-]+|\bRADIUS\s*[=:-]\s*|\bR\s*=\s*)NUM)", R"(NUM\s*RAD(?:IUS)?\b)",
+        R"(\bD\s?[\d.]+\s?R\s?NUM)", R"(\b(?:BULL|TORUS|TORIC)\w*[ A-Z]*\bR\s?NUM)"})
     if (!tool.corner_radius_mm) tool.corner_radius_mm = find_size(words, pattern, inch);
 }
 

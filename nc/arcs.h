@@ -33,7 +33,7 @@ struct ArcResult {
   double radius_difference_mm = 0;  ///< |radius at end - radius at start|
   double start_radius_mm = 0, end_radius_mm = 0;
   bool is_point = false;  ///< the whole arc is no larger than kPointMm and its centre coincides with an end: no arc
-  std::string error;  ///< not empty: no arc
+  std::string error;      ///< not empty: no arc
 };
 
 /// Rounding of programs with three decimals (four in inches) leaves of arcs that are so small nothing but their ends.

@@ -95,7 +95,7 @@ class BlockInterpreter {
     int g = 0;  ///< 0: none active
     std::optional<double> r_mm, z_mm, p_s, q_mm;
     std::optional<double> first_peck_mm, peck_less_mm, least_peck_mm;  ///< I J K (Dialect::pecks_by_ijk)
-    Vec3 shift_mm = Vec3::Zero();  ///< I J K of G76 and G87
+    Vec3 shift_mm = Vec3::Zero();                                      ///< I J K of G76 and G87
     double initial_mm = 0;
     bool incremental = false;
     bool peck_warned = false;
@@ -105,10 +105,10 @@ class BlockInterpreter {
   struct Corner {
     bool waits = false;
     bool chamfer = false;
-    double size_mm = 0;     ///< radius; of a chamfer the distance from the corner
-    std::size_t move = 0;   ///< in Interpretation::moves
+    double size_mm = 0;    ///< radius; of a chamfer the distance from the corner
+    std::size_t move = 0;  ///< in Interpretation::moves
     std::size_t offset = 0;
-    std::string text;       ///< of the word, for messages
+    std::string text;  ///< of the word, for messages
   };
 
   // modal_state.cpp: words that change the state
@@ -263,7 +263,7 @@ class BlockInterpreter {
     std::size_t more = 0;
     bool any_point = false;  ///< a coordinate of the program has a point
     double largest_mm = 0;   ///< coordinate without one
-    double value = 0;  ///< as written
+    double value = 0;        ///< as written
     bool inch = false, is_time = false, is_angle = false;
     std::string read_with(double factor) const;
   };
@@ -316,7 +316,7 @@ class BlockInterpreter {
   Corner corner_;
   WholeNumbers whole_numbers_;
   std::size_t operation_ = 0;  ///< counts tool changes: limits are said once in each
-  bool leaving_ = false;    ///< G40 was read; the cutter is still beside the contour
+  bool leaving_ = false;       ///< G40 was read; the cutter is still beside the contour
   Vec3 beside_mm_ = Vec3::Zero();
 
   Vec3 rotary_rad_ = Vec3::Zero();             ///< A, B, C

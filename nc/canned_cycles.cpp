@@ -74,8 +74,7 @@ class HoleWriter {
       constexpr double kRounding_mm = 1e-9;
       out = hole_.g == 83 || (hole_.clear_every_mm > 0 && cleared - depth >= hole_.clear_every_mm - kRounding_mm);
       if (out) cleared = depth;
-      go(CycleStep::Kind::rapid,
-         out ? hole_.retract_mm : std::min(depth + hole_.peck_clearance_mm, hole_.retract_mm));
+      go(CycleStep::Kind::rapid, out ? hole_.retract_mm : std::min(depth + hole_.peck_clearance_mm, hole_.retract_mm));
     }
   }
 

@@ -57,8 +57,7 @@ std::optional<Cut> at_distance(const Side& side, const Vec2& corner, double dist
   const double turn = 2 * std::asin(distance / (2 * side.curve.radius)), signed_turn = away * side.sense * turn;
   const Vec2 out = corner - side.curve.centre;
   const double c = std::cos(signed_turn), s = std::sin(signed_turn);
-  return Cut{side.curve.centre + Vec2(c * out.x() - s * out.y(), s * out.x() + c * out.y()),
-             side.curve.radius * turn};
+  return Cut{side.curve.centre + Vec2(c * out.x() - s * out.y(), s * out.x() + c * out.y()), side.curve.radius * turn};
 }
 
 struct Rounding {
@@ -136,8 +135,8 @@ Vec3 BlockInterpreter::target_at_angle(const Vec3& start, Vec3 end) {
   const double across = first ? std::cos(angle) : std::sin(angle), along = first ? std::sin(angle) : std::cos(angle);
   const int given = first ? axes.first : axes.second, open = first ? axes.second : axes.first;
   if (std::abs(across) < 1e-6) {
-    corner_error((*word)->offset, fmt::format("a line at {} degrees does not lead to another {}", (*word)->value,
-                                              kAxisLetters[given]));
+    corner_error((*word)->offset,
+                 fmt::format("a line at {} degrees does not lead to another {}", (*word)->value, kAxisLetters[given]));
     return end;
   }
   end[open] = start[open] + (end[given] - start[given]) * along / across;
@@ -197,8 +196,8 @@ void BlockInterpreter::put_corner(const Corner& corner, std::size_t before, std:
   a.editable = b.editable = false;
   if ((b.kind != MoveKind::linear && b.kind != MoveKind::arc) || b.canned || b.reference || leaving_ ||
       !std::ranges::all_of(out_.rotary, [&](const RotaryTarget& t) { return t.move < before; }))
-    return fail(fmt::format("{} is not followed by a line or an arc of its kind; G1, G2 or G3 in the plane was expected",
-                            corner.text));
+    return fail(fmt::format(
+        "{} is not followed by a line or an arc of its kind; G1, G2 or G3 in the plane was expected", corner.text));
   if (state_.feed_mode == FeedMode::inverse_time)
     return fail(fmt::format("{} in inverse time (G93) is not supported", corner.text));
   const PlaneAxes axes = axes_of(plane_);
@@ -262,9 +261,10 @@ void BlockInterpreter::put_corner(const Corner& corner, std::size_t before, std:
     arc.sweep_rad = sense * turn_from(cut->before.place - cut->centre, cut->behind.place - cut->centre, sense);
     const auto in_moves = from_program(frame, arc);
     if (!in_moves)
-      return fail(fmt::format("{} under a scale that differs along its two axes would be an ellipse; one scale for "
-                              "both was expected",
-                              corner.text));
+      return fail(
+          fmt::format("{} under a scale that differs along its two axes would be an ellipse; one scale for "
+                      "both was expected",
+                      corner.text));
     out_.arcs.push_back(*in_moves);
     between.kind = MoveKind::arc;
     between.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);

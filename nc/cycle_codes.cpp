@@ -76,7 +76,8 @@ void BlockInterpreter::read_peck_words() {
     if (!words_.has(letter)) return;
     out = words_.value(letter) * unit_mm();
     if (*out >= 0) return;
-    error(words_.offset_of(letter), "cycle", fmt::format("{} of G{} is negative; a depth was expected", letter, cycle_.g));
+    error(words_.offset_of(letter), "cycle",
+          fmt::format("{} of G{} is negative; a depth was expected", letter, cycle_.g));
     out = 0;
   };
   length('I', cycle_.first_peck_mm);

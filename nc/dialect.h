@@ -38,12 +38,12 @@ struct Dialect {
   bool strict = false;
 
   // Words
-  bool corner_words = true;           ///< ,R ,C ,A at the end of a block
-  bool d_is_modal = true;             ///< D holds until the next D, in whatever block; else in blocks with G41, G42
-  bool dwell_takes_p_alone = false;   ///< axis words beside G4 belong to the motion code: it dwells, then moves
+  bool corner_words = true;              ///< ,R ,C ,A at the end of a block
+  bool d_is_modal = true;                ///< D holds until the next D, in whatever block; else in blocks with G41, G42
+  bool dwell_takes_p_alone = false;      ///< axis words beside G4 belong to the motion code: it dwells, then moves
   bool stores_reference_points = false;  ///< G28.1, G30.1: the place of the tool becomes the reference point
-  bool haas_work_offsets = false;     ///< G154 P1 to P99, G110 to G129
-  bool pecks_by_ijk = false;          ///< G73, G83: I first peck, J less each time, K at least; L alone repeats
+  bool haas_work_offsets = false;        ///< G154 P1 to P99, G110 to G129
+  bool pecks_by_ijk = false;             ///< G73, G83: I first peck, J less each time, K at least; L alone repeats
 
   // Numbers
   bool dwell_p_is_ms = true;                  ///< G4 P500 is 500 ms; else 500 s

@@ -156,8 +156,8 @@ double BlockInterpreter::whole_number_unit(char letter, bool& is_angle) const {
     case 'J':
       return frame_code == 510 ? 1 : length;  // scales: see scale_value
     case 'K': {
-      const bool of_cycle = cycle_.g != 0 && !(dialect.pecks_by_ijk && (cycle_.g == 73 || cycle_.g == 83)) &&
-                            plane_ == Plane::xy;
+      const bool of_cycle =
+          cycle_.g != 0 && !(dialect.pecks_by_ijk && (cycle_.g == 73 || cycle_.g == 83)) && plane_ == Plane::xy;
       return frame_code == 510 || of_cycle ? 1 : length;  // of a cycle: repeats
     }
     case 'Q':
@@ -231,9 +231,10 @@ RunVerdict BlockInterpreter::verdict() const {
 /// "50 mm", "0.05 mm", "2 s", "45 degrees".
 std::string BlockInterpreter::WholeNumbers::read_with(double factor) const {
   const double number = value * factor;
-  return is_time ? fmt::format("{:g} s", number) : is_angle ? fmt::format("{:g} degrees", number)
-                                               : inch     ? fmt::format("{:g} inch", number)
-                                                          : fmt::format("{:g} mm", number);
+  return is_time    ? fmt::format("{:g} s", number)
+         : is_angle ? fmt::format("{:g} degrees", number)
+         : inch     ? fmt::format("{:g} inch", number)
+                    : fmt::format("{:g} mm", number);
 }
 
 void BlockInterpreter::warn_of_whole_numbers() {

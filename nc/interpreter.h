@@ -36,7 +36,7 @@ struct InterpreterOptions {
   /// known; it is assumed (docs/nc-language.md), with the warning [decimal-point] where the path depends on it.
   std::optional<bool> whole_numbers_are_increments{};
   double max_spindle_speed_rpm = std::numeric_limits<double>::infinity();  ///< of the machine: a greater S is clamped
-  std::uint16_t skip_switches = 0;            ///< bit n: blocks that begin with /n are left out (/ is /1)
+  std::uint16_t skip_switches = 0;  ///< bit n: blocks that begin with /n are left out (/ is /1)
   /// Blocks that loops and repeated subprograms may run again before the program counts as endless.
   std::size_t max_repeated_blocks = 10'000'000;
 

@@ -135,8 +135,7 @@ void BlockInterpreter::move_after_dwell() {
   const bool moves = words_.has_any("XYZ") || rotary_target_ || request_.cycle_given || (arc && words_.has_any("IJKR"));
   if (!moves || request_.trouble) return;
   if (arc && cycle_.g == 0)
-    error(words_.offset(), "modal-group",
-          "G4 with an arc (G2, G3), both of which use P; two blocks were expected");
+    error(words_.offset(), "modal-group", "G4 with an arc (G2, G3), both of which use P; two blocks were expected");
   else
     move();
 }

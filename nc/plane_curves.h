@@ -17,10 +17,10 @@ double turn_from(const Vec2& a, const Vec2& b, double sense);
 /// A line, or a circle.
 struct PlaneCurve {
   bool circle = false;
-  Vec2 point = Vec2::Zero();                 ///< of a line
-  Vec2 direction = Vec2::Zero();             ///< of a line, unit
-  Vec2 centre = Vec2::Zero();                ///< of a circle
-  double radius = 0;                         ///< of a circle
+  Vec2 point = Vec2::Zero();      ///< of a line
+  Vec2 direction = Vec2::Zero();  ///< of a line, unit
+  Vec2 centre = Vec2::Zero();     ///< of a circle
+  double radius = 0;              ///< of a circle
 };
 
 /// Where two curves meet; empty where they do not. Lines that are parallel give a point that is not finite.

@@ -40,7 +40,8 @@ class Glance {
  public:
   Glance(std::string_view text, std::size_t at, std::size_t end) : text_(text), at_(at), end_(end) {}
 
-  /// True where up to the end, or to the next `;`, there are words and comments and nothing else, and at least one word.
+  /// True where up to the end, or to the next `;`, there are words and comments and nothing else, and at least one
+  /// word.
   bool reads_as_block() {
     bool any = false;
     for (skip_blanks(); at_ < end_ && text_[at_] != ';'; skip_blanks()) {
@@ -89,8 +90,8 @@ class Glance {
     if (letters - i > 1) {
       std::string keyword;
       for (std::size_t k = i; k < letters; ++k) keyword += upper(text_[k]);
-      constexpr std::array<std::string_view, 11> kKeywords{"IF", "WHILE", "WH", "DO", "END",  "EN",
-                                                           "GOTO", "GO",  "THEN", "TH", "ELSE"};
+      constexpr std::array<std::string_view, 11> kKeywords{"IF",   "WHILE", "WH",   "DO", "END", "EN",
+                                                           "GOTO", "GO",    "THEN", "TH", "ELSE"};
       if (std::ranges::find(kKeywords, keyword) == kKeywords.end()) return false;
     }
     at_ = letters;

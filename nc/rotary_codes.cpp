@@ -75,9 +75,10 @@ void BlockInterpreter::set_tip_control(TipControl control, const Code& code) {
                       fmt::format("{} without G43: tool-centre-point control with a tool length of 0", code_text(code)),
                       "M without G43");
     else if (!tool_length_active_)
-      error(code.word->offset, "tool-length",
-            fmt::format("{} switches tool-centre-point control on without a tool length; H with its number was expected",
-                        code_text(code)));
+      error(
+          code.word->offset, "tool-length",
+          fmt::format("{} switches tool-centre-point control on without a tool length; H with its number was expected",
+                      code_text(code)));
     if (radius_.active)
       error(code.word->offset, "cutter-radius",
             fmt::format("{} under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));

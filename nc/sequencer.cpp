@@ -116,8 +116,9 @@ void Sequencer::step() {
 void Sequencer::refuse_what_is_read_elsewhere() {
   const Program& file = *at_.file;
   if (file.nested_comment != Program::kNowhere)
-    report_.error(file.nested_comment, "comment-nested",
-                  fmt::format("a comment in a comment; a {} control refuses it, `)` was expected first", dialect_.title));
+    report_.error(
+        file.nested_comment, "comment-nested",
+        fmt::format("a comment in a comment; a {} control refuses it, `)` was expected first", dialect_.title));
   if (const auto at = file.macro.expressions.abbreviation)
     report_.error(*at, "expression",
                   fmt::format("an abbreviated word; a {} control knows it by its full name only", dialect_.title));
@@ -401,8 +402,7 @@ void Sequencer::warn_of_blocks_behind_the_end() {
     const Block& block = program.blocks[b];
     if (block.word_count == 0 && !block.flow) continue;
     if (flow && ((files_.runs(program)[b] > 0) || block.flow || program_number(program, b))) return;
-    report_.warning(program.offset_of(b), "after-end",
-                    "the blocks after the end of the program (M2, M30) are not run");
+    report_.warning(program.offset_of(b), "after-end", "the blocks after the end of the program (M2, M30) are not run");
     return;
   }
 }

@@ -13,7 +13,9 @@ namespace {
 bool within(int number, int first, int last) { return number >= first && number <= last; }
 
 double work_offset_code(const Dialect& dialect, int work_offset) {
-  return work_offset > 540000 ? (dialect.haas_work_offsets ? 154 : 54.1) : work_offset > 100 ? work_offset / 10.0 : work_offset;
+  return work_offset > 540000 ? (dialect.haas_work_offsets ? 154 : 54.1)
+         : work_offset > 100  ? work_offset / 10.0
+                              : work_offset;
 }
 
 }  // namespace

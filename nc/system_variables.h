@@ -9,15 +9,15 @@
 namespace camber::nc {
 
 /// Positions and offsets are in the program's unit, positions in the work frame. What a program cannot know before it
-/// runs (machine positions, offsets that it has not set, signals, the date) is taken as 0, or as the work position, with
-/// a warning.
+/// runs (machine positions, offsets that it has not set, signals, the date) is taken as 0, or as the work position,
+/// with a warning.
 ///
 /// Fanuc, Haas, Mazak: #1000..#1135 signals (0), offsets as in nc/offset_variables.h, #3000 alarm: an error,
 /// #3001 #3002 clocks, #3003 #3004 #3005 #3007 switches, #3006 stop, #3011 #3012 date and time (0), #3901 #3902 parts,
 /// #4001..#4130 modal codes, #5001.. end of the last block, #5021.. machine position, #5041.. position, #5061.. skip
 /// position, #5081.. tool length.
-/// LinuxCNC: #5061.. probe, #5161.. #5181.. reference points (0), #5221.. work offsets, #5220 coordinate system, #5400 tool,
-/// #5401.. its offsets (0), #5420.. position.
+/// LinuxCNC: #5061.. probe, #5161.. #5181.. reference points (0), #5221.. work offsets, #5220 coordinate system, #5400
+/// tool, #5401.. its offsets (0), #5420.. position.
 ///
 /// The clocks count the programmed time of cutting moves and dwells and a millisecond for every variable block, so that
 /// a loop that waits for them ends.

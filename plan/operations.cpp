@@ -303,8 +303,8 @@ class Planner {
     op.nominal_time_s = 60 * surface_mm2 / (c.radial_mm * c.feed_mm_per_min);
   }
 
-  /// None where no more is there than roughing would leave. Levels, by an end mill where it is deeper than the ball end mill cuts at once, else by that itself. Returns what
-  /// is left.
+  /// None where no more is there than roughing would leave. Levels, by an end mill where it is deeper than the ball end
+  /// mill cuts at once, else by that itself. Returns what is left.
   double rough_free_form(const Step& step, ToolNeed need, int ball) {
     const Primitive& p = out_.primitives[step.primitive];
     constexpr double kSkin = 1.05;  // of the allowance that roughing would leave

@@ -44,10 +44,7 @@ double blocks_per_line_mm(const FeedsByKind& feeds) {
 class Compressor {
  public:
   Compressor(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options)
-      : program_(program),
-        moves_(moves),
-        options_(options),
-        style_(text_style_of(program, moves)) {}
+      : program_(program), moves_(moves), options_(options), style_(text_style_of(program, moves)) {}
 
   void rewrite(const RunChain& runs) {
     if (runs.path.points.size() < 2) return;

@@ -28,8 +28,8 @@ struct CompressOptions {
   std::optional<FeedsByKind> feeds{};  ///< minimize the time at these feeds; otherwise the number of blocks
   bool helices = false;                ///< arcs whose third axis moves evenly with the angle, where the path does
   bool switch_planes = false;  ///< runs in another plane get its G17 G18 G19 and the old one behind; else lines only
-  FitOptions fit{};                           ///< tolerance and increment are set from the program
-  std::function<void(double)> progress{};     ///< fraction of the moves
+  FitOptions fit{};            ///< tolerance and increment are set from the program
+  std::function<void(double)> progress{};  ///< fraction of the moves
 };
 
 /// A stretch of blocks that are plain straight cuts at one feed, in one plane or in space.
@@ -47,8 +47,9 @@ enum class RunKind { in_plane, in_space, with_arcs };
 /// and words that repeat what is in force (F, S, M3, M8, G90 ...; in the first block of a run they may also change it),
 /// moves in the plane, and stands directly behind the one before it. Comments, other words, another feed, drilling
 /// cycles, G41 and G42, exact stop, block skip and the blocks behind it whose place depends on the switch, turned or
-/// scaled frames and moves that the text does not say one by one end a run. In a program with macros or subprograms blocks with a number
-/// are left alone: they may be jumped to. With arcs G2, G3, I, J, K and R may stand in a block too.
+/// scaled frames and moves that the text does not say one by one end a run. In a program with macros or subprograms
+/// blocks with a number are left alone: they may be jumped to. With arcs G2, G3, I, J, K and R may stand in a block
+/// too.
 std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind);
 
 /// What kept a program as it was, in one sentence without a stop: how many runs there are, and what ends them.
@@ -94,11 +95,11 @@ void place_after(std::vector<RewrittenRun>& runs, const std::vector<nc::BlockRep
 
 struct Compression {
   std::string text;
-  std::vector<RewrittenRun> runs;  ///< those that became fewer blocks
-  double max_deviation_mm = 0;     ///< over all of them
-  double max_kink_rad = 0;         ///< at joints beside an arc that are no corners of the input
+  std::vector<RewrittenRun> runs;    ///< those that became fewer blocks
+  double max_deviation_mm = 0;       ///< over all of them
+  double max_kink_rad = 0;           ///< at joints beside an arc that are no corners of the input
   std::uint32_t max_kink_block = 0;  ///< of the new text: the one that begins there
-  double rms_kink_rad = 0;         ///< over these joints
+  double rms_kink_rad = 0;           ///< over these joints
 };
 
 /// Linear in the number of blocks. Does not throw on a program that was read and interpreted without errors.

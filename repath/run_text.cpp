@@ -54,7 +54,8 @@ class RunBlockWriter {
 
  protected:
   bool says_g1(std::uint32_t block) const {
-    return std::ranges::any_of(program_.words_of(block), [](const nc::Word& w) { return w.letter == 'G' && w.value == 1; });
+    return std::ranges::any_of(program_.words_of(block),
+                               [](const nc::Word& w) { return w.letter == 'G' && w.value == 1; });
   }
 
   std::string code(int g) const { return fmt::format("G{}{}", style_.two_digit_codes ? "0" : "", g); }

@@ -151,9 +151,8 @@ std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation&
 std::string why_unchanged(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
   RunFinder finder(program, moves, kind);
   const std::vector<Run> runs = finder.find();
-  const auto cuts = std::ranges::count_if(moves.moves, [](const nc::Move& m) {
-    return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc;
-  });
+  const auto cuts = std::ranges::count_if(
+      moves.moves, [](const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; });
   const ApartCounts& apart = finder.apart();
   const auto most = std::ranges::max_element(apart.begin() + 1, apart.end());
   std::string why = fmt::format("{} cuts in {} runs", cuts, runs.size());

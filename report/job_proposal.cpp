@@ -274,7 +274,7 @@ std::string simulation_text(const std::optional<StockProposal>& stock) {
     }
   std::string out = "\n[simulation]\n" + line(fmt::format("voxel_mm = {}", decimal(voxel)),
                                               "by the blank's size; for finishing half the allowance or less");
-  if (stock && stock->in_the_way)
+  if (stock && (stock->in_the_way || stock->told.empty()))
     out += line("collisions = \"warning\"",
                 stock->told.empty() ? "until the blank is right" : "rapids run through the blank");
   return out;

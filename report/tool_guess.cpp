@@ -17,6 +17,7 @@ constexpr double kFaceMill_mm = 32;   // and wider
 constexpr double kClearOfCut_mm = 5;  // of the holder above the blank
 constexpr double kHelix_deg = 30, kVBit_deg = 90, kTaper_deg = 3;
 constexpr double kSmallShank_mm = 6;  // DIN 6535: the smallest
+constexpr double kReachDiameters = 6;
 
 struct Row {
   double diameter_mm, length_mm;
@@ -141,9 +142,11 @@ void fill_shank(ToolProposal& tool, double depth_mm, std::vector<std::string>& a
 
 void fill_overhang(GuessedTool& out, double depth_mm) {
   ToolProposal& tool = out.tool;
-  const double least_mm = std::ceil(std::max(depth_mm, tool.flute_length_mm.value_or(0)) + kClearOfCut_mm);
+  // Deeper in the part than a thin cutter can reach, holder or shank go in with it.
+  const double reach_mm = std::min(depth_mm, kReachDiameters * *tool.diameter_mm);
+  const double least_mm = std::ceil(std::max(reach_mm, tool.flute_length_mm.value_or(0)) + kClearOfCut_mm);
   out.overhang_from_source = tool.overhang_mm.has_value();
-  if (tool.overhang_mm && *tool.overhang_mm > depth_mm && *tool.overhang_mm >= tool.flute_length_mm.value_or(0)) return;
+  if (tool.overhang_mm && *tool.overhang_mm > reach_mm && *tool.overhang_mm >= tool.flute_length_mm.value_or(0)) return;
   if (tool.overhang_mm && tool.doubt.empty())
     tool.doubt = fmt::format("it sticks out by {:g} mm in its source, and its flutes or the cut reach further up",
                              *tool.overhang_mm);

@@ -82,8 +82,7 @@ class MachineCheck {
   };
 
   void say(const nc::Move& m, Severity severity, const char* check, std::string message) {
-    diagnostics_.add(
-        program_.source.diagnostic(severity, program_.blocks[m.block].offset, std::move(message), check));
+    diagnostics_.add(program_.source.diagnostic(severity, program_.blocks[m.block].offset, std::move(message), check));
   }
 
   void look_at_spindle(const nc::Move& m) {

@@ -578,10 +578,11 @@ Prediction judge(const Job& job, const Target& target, const SimulatedProgram& p
       out.total_error_mm[i] = target.part->distance_mm(p.place_mm + p.error_mm * p.normal);
     });
   }
-  if (target.contour_parts) out.contour_parts_um = contour_figures(out.surface);
   out.form_error_um = removal::error_figures(error_um, area);
   out.deflection_um = removal::error_figures(deflection_um, area);
   out.contour_um = removal::error_figures(contour_um, area);
+  if (target.contour_parts && out.contour_um.p95 >= kWorthParting_um)
+    out.contour_parts_um = contour_figures(out.surface);
   return out;
 }
 

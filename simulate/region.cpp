@@ -193,8 +193,8 @@ bool stands_in(const removal::Stock& stock, const machine::Tool& tool, const Too
 void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
                         Diagnostics& diagnostics) {
   check_region_start(
-      job, program,
-      [&](const machine::Tool& tool, const ToolPose& pose) { return stands_in(blank, tool, pose); }, diagnostics);
+      job, program, [&](const machine::Tool& tool, const ToolPose& pose) { return stands_in(blank, tool, pose); },
+      diagnostics);
 }
 
 void check_region_start(const machine::Job& job, const SimulatedProgram& program,

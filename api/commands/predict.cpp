@@ -164,10 +164,10 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
     if (!request.trace.empty()) measured = read_motion(given, request, diagnostics);
   };
   Diagnostics of_original;  // a program like the job's: what is to be said of it, the job's own says too
-  PreparedJob out{
-      simulate::set_up(job, {.check = check, .clearance = request.trace.empty()}, {.program = diagnostics, .original = of_original, .target = diagnostics},
-                       request.work, request.programs.get()),
-      {}};
+  PreparedJob out{simulate::set_up(job, {.check = check, .clearance = request.trace.empty()},
+                                   {.program = diagnostics, .original = of_original, .target = diagnostics},
+                                   request.work, request.programs.get()),
+                  {}};
   out.setup.original.reset();
   out.setup.target.surface.clear_stamps();  // its points are in the map
   const simulate::SimulatedProgram& program = out.setup.program;

@@ -89,8 +89,8 @@ std::vector<std::uint32_t> EmittedText::block_of_lines() const {
     if (block == header_before_) out.insert(out.end(), header_lines_, Emission::kNoBlock);
     std::size_t lines = 1;
     for (; next < replaced_.size() && replaced_[next].first == block; ++next)
-      lines += static_cast<std::size_t>(std::count(replaced_[next].second.begin(), replaced_[next].second.end(),
-                                                   program_.source.line_end()));
+      lines += static_cast<std::size_t>(
+          std::count(replaced_[next].second.begin(), replaced_[next].second.end(), program_.source.line_end()));
     out.insert(out.end(), lines, block);
   }
   return out;

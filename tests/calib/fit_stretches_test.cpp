@@ -117,6 +117,30 @@ TEST(FitStretches, CountsCopiesOnceAndKeepsThemInOneFold) {
   EXPECT_NEAR(programmed_time_s(table[0].stretch, program), 17.24, 0.001);
 }
 
+/// Tables of logs without rapids have pieces: from the end of one line to the end of another.
+TEST(FitStretches, TakesPiecesOfARunWithMovingEnds) {
+  const machine::Machine known = known_machine();
+  StretchRun run{"figures", figures(), {}};
+  const auto whole = planned(run.program, known);
+  const auto segments = feedmodel::plan_motion(run.program, known).times;
+  for (const TimedStretch& t : whole) {
+    const std::size_t first = t.stretch.move_first, end = t.stretch.move_end;
+    if (end - first < 6) continue;
+    const FeedStretch piece = piece_of(t.stretch, run.program, first + 1, end - 1);
+    EXPECT_TRUE(piece.begins_in_motion() && piece.ends_in_motion());
+    double from_s = -1, to_s = 0;
+    for (const feedmodel::SegmentTime& s : segments) {
+      if (s.move < piece.move_first || s.move >= piece.move_end) continue;
+      if (from_s < 0) from_s = s.start_s;
+      to_s = s.start_s + s.duration_s;
+    }
+    run.timed.push_back({piece, to_s - from_s, 0.01});
+  }
+  ASSERT_GT(run.timed.size(), 8u);
+  const StretchFit fit = fit_stretches({run}, {}, {.laws = {stop_law()}});
+  EXPECT_LT(fit.held_out.mean, 1.0);
+}
+
 TEST(FitStretches, PredictsToolsOfTheNistBoxThatItHasNotSeen) {
   StretchRun run{"box_op5", nist_program(), {}};
   run.timed = read_stretch_table(nist("op5_feed_runs.csv"), run.program);

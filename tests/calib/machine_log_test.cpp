@@ -52,8 +52,12 @@ TEST_F(MachineLogTest, TimesAStretchFromItsFirstEventToTheFirstOfAnotherLine) {
 }
 
 TEST_F(MachineLogTest, LeavesOutWhatWasHeldOverriddenOrLost) {
-  EXPECT_EQ(timed(lines(2.0)).size(), 0u);                              // a feed hold of 2 s
-  EXPECT_EQ(timed(stamp(0, "Feed_Override|80") + lines()).size(), 0u);  // an override all along
+  EXPECT_EQ(timed(lines(2.0)).size(), 0u);  // a feed hold of 2 s
+  // A constant override is divided out, one that changes is not.
+  const auto slow = timed(stamp(0, "Feed_Override|80") + lines());
+  ASSERT_EQ(slow.size(), 1u);
+  EXPECT_DOUBLE_EQ(slow.front().feed_factor, 0.8);
+  EXPECT_EQ(timed(stamp(0, "Feed_Override|80") + stamp(0.5, "Feed_Override|100") + lines()).size(), 1u);
   EXPECT_EQ(timed(stamp(0, "Feed_Override|100") + lines()).size(), 1u);
   EXPECT_EQ(timed(stamp(1, "Block_Number|1") + stamp(2, "Block_Number|2") + stamp(7, "Block_Number|3") +
                   stamp(8, "Block_Number|4"))
@@ -82,10 +86,9 @@ TEST_F(MachineLogTest, SaysWhatIsWrong) {
   EXPECT_EQ(error_of("2017-02-14T14:56:22Z|Block_Number|x\n"),
             "log.txt:1:35: error: Block_Number is \"x\"; a number that is not negative was expected [log-number]\n"
             "    2017-02-14T14:56:22Z|Block_Number|x\n                                      ^");
-  EXPECT_EQ(
-      error_of("2017-02-14T14:56:22Z|Feed_Rate|1\n"),
-      "log.txt: error: the log has no Block_Number; lines as 2017-02-14T14:56:34.62Z|Block_Number|18 were expected "
-      "[log-item]");
+  EXPECT_EQ(error_of("2017-02-14T14:56:22Z|Feed_Rate|1\n"),
+            "log.txt: error: the log has no Block_Number and no Xabs, Yabs, Zabs; lines as "
+            "2017-02-14T14:56:34.62Z|Block_Number|18 were expected [log-item]");
   EXPECT_EQ(error_of("a,b\nc,d\n"),
             "log.txt: error: 2 of 2 lines are not timestamp|item|value; is this a machine log? [log-fields]");
 }

@@ -36,14 +36,14 @@ def without_times(figures):
 class AddOn(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.job = path_job.make()
+        cls.job = path_job.make(apart_mm=8)
         cls.folder = tempfile.mkdtemp()
         settings.prepare(cls.job)
 
     def setUp(self):
         self.job.CamberMachine = MACHINE
         self.job.CamberMaterial = "C45"
-        self.job.CamberVoxel = 0.4
+        self.job.CamberVoxel = 0.8
         self.job.CamberForceLimit = 0
         self.job.CamberTolerance = 20
         self.job.PostProcessor, self.job.PostProcessorArgs = "linuxcnc", "--no-show-editor"
@@ -170,7 +170,7 @@ class AddOn(unittest.TestCase):
     def test_messages_name_the_operation(self):
         surface = [obj for obj in self.job.Operations.Group if obj.Label == "Surface"][0]
         kept = surface.Gcode
-        surface.Gcode = kept[:1] + ["G1 X-4 Y1 Z0 F8", "G0 X28 Y1 Z-3"] + kept[2:]
+        surface.Gcode = kept[:1] + ["G1 X-4 Y1 Z0 F8", "G0 X28 Y1 Z-3"] + kept[3:]
         self.job.Document.recompute()
         try:
             files = self.files("through")
@@ -192,6 +192,9 @@ class AddOn(unittest.TestCase):
         self.assertFalse(os.path.exists(os.path.join(files.folder, "out.nc")))
 
     def test_settings_that_are_missing_are_named(self):
+        for name in run.MATERIALS:
+            self.job.CamberMaterial = name
+            self.assertEqual(run.problems_of_job(self.files("material").toml), "", name)
         self.job.CamberMaterial = ""
         with self.assertRaisesRegex(settings.MissingSetting, "The material is missing"):
             self.files("none")

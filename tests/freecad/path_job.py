@@ -27,16 +27,17 @@ def controller(job, number, bit, feed_mm_per_min, rpm):
     return out
 
 
-def raster():
-    """Rows along X over the top, 1 mm apart; feeds of a path are in mm/s."""
+def raster(apart_mm):
+    """Rows along X over the top; feeds of a path are in mm/s."""
     lines = ["G0 X-4 Y1 Z5"]
-    for row in range(17):
+    for row in range(int(16 / apart_mm) + 1):
         ends = (-4, 28) if row % 2 == 0 else (28, -4)
-        lines += ["G1 X%g Y%g Z0 F8" % (ends[0], 1 + row), "G1 X%g Y%g Z0 F8" % (ends[1], 1 + row)]
+        y = 1 + row * apart_mm
+        lines += ["G1 X%g Y%g Z0 F8" % (ends[0], y), "G1 X%g Y%g Z0 F8" % (ends[1], y)]
     return lines + ["G0 Z5"]
 
 
-def make(name="Part"):
+def make(name="Part", apart_mm=1.0):
     doc = FreeCAD.newDocument(name)
     block = Part.makeBox(24, 18, 6, FreeCAD.Vector(0, 0, -6)).cut(
         Part.makeBox(12, 9, 2, FreeCAD.Vector(6, 4.5, -2)))
@@ -47,7 +48,7 @@ def make(name="Part"):
     mill = controller(job, 1, "5mm_Endmill.fctb", 480, 6000)
     # While there is one tool controller: with two, FreeCAD asks on the screen which an operation takes.
     top = PathCustom.Create("Surface")
-    top.Gcode = raster()
+    top.Gcode = raster(apart_mm)
     solid = job.Model.Group[0]
     floor = [i for i, face in enumerate(solid.Shape.Faces) if abs(face.BoundBox.ZMax + 2) < 1e-6][0]
     pocket = PathPocket.Create("Pocket")

@@ -33,11 +33,11 @@ def check():
     assert set(commands.COMMANDS) <= set(FreeCADGui.listCommands())
     assert "CamberWorkbench" in FreeCADGui.listWorkbenches()
     FreeCADGui.activateWorkbench("CamberWorkbench")
-    job = path_job.make()
+    job = path_job.make(apart_mm=4)
     settings.prepare(job)
     job.CamberMachine = os.path.join(ROOT, "samples", "01-finishing", "machine.toml")
     job.CamberMaterial = "C45"
-    job.CamberVoxel = 0.3
+    job.CamberVoxel = 0.4
     for controller in job.Tools.Group:
         controller.CamberOverhang = 25 if controller.ToolNumber == 1 else 40
     assert commands.selected_job() is job

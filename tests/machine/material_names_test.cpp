@@ -106,11 +106,11 @@ TEST(MaterialNames, UnknownOnesOfAKnownGroupStandForIt) {
 }
 
 TEST(MaterialNames, AHardnessSelectsTheClassOfSteel) {
-  const NameCase cases[] = {{"1.2379 60 HRC", "hardened-60HRC"},    {"1.2343 (50-52 HRC)", "hardened-55HRC"},
-                            {"Toolox 44 45 HRC", "P20"}, {"Weldox 300 HB", "P20"},
-                            {"Something 30HRC", "34CrNiMo6"},       {"SKD61 HRC 48", "hardened-55HRC"},
-                            {"42CrMo4 250 HB", "42CrMo4"},          {"C45 190 HB", "C45"},
-                            {"mystery 130 HB", "S235JR"},           {"XYZ 700 HV", "hardened-60HRC"}};
+  const NameCase cases[] = {{"1.2379 60 HRC", "hardened-60HRC"}, {"1.2343 (50-52 HRC)", "hardened-55HRC"},
+                            {"Toolox 44 45 HRC", "P20"},         {"Weldox 300 HB", "P20"},
+                            {"Something 30HRC", "34CrNiMo6"},    {"SKD61 HRC 48", "hardened-55HRC"},
+                            {"42CrMo4 250 HB", "42CrMo4"},       {"C45 190 HB", "C45"},
+                            {"mystery 130 HB", "S235JR"},        {"XYZ 700 HV", "hardened-60HRC"}};
   for (const auto& c : cases) {
     const MaterialMatch match = find_material(c.name);
     ASSERT_TRUE(match.preset) << c.name;

@@ -25,7 +25,8 @@ double cut_mm(const Read& r) {
 
 // --- numbers without a point
 
-const std::string kWhole = "G21 G90 G54\nT1 M6\nS5000 M3\nG0 X50 Y50\nG43 H1 Z50\nG0 Z2\nG1 Z-1 F100\nG4 X2\nG1 X60\nG0 Z50\nM30\n";
+const std::string kWhole =
+    "G21 G90 G54\nT1 M6\nS5000 M3\nG0 X50 Y50\nG43 H1 Z50\nG0 Z2\nG1 Z-1 F100\nG4 X2\nG1 X60\nG0 Z50\nM30\n";
 
 TEST(WholeNumbers, AreReadAsUnitsWithAWarningThatNamesTheSetting) {
   const Read r = read_text(kWhole, control("haas"));
@@ -39,9 +40,11 @@ TEST(WholeNumbers, AreReadAsUnitsWithAWarningThatNamesTheSetting) {
             std::string::npos);
   // No control is named.
   EXPECT_EQ(read_text(kWhole, {.inch = false}).messages, Messages{});
-  EXPECT_NE(read_text("G20\nG0 X0 Y0 Z20000\n", {}).messages.at(0).find(
-                "(Fanuc: decimal point input, parameter 3401#0; Haas: default to float, setting 162; Mazak EIA: "),
-            std::string::npos);
+  EXPECT_NE(
+      read_text("G20\nG0 X0 Y0 Z20000\n", {})
+          .messages.at(0)
+          .find("(Fanuc: decimal point input, parameter 3401#0; Haas: default to float, setting 162; Mazak EIA: "),
+      std::string::npos);
 }
 
 TEST(WholeNumbers, AreIncrementsInEveryWordWhereTheControlIsSetSo) {
@@ -53,11 +56,11 @@ TEST(WholeNumbers, AreIncrementsInEveryWordWhereTheControlIsSetSo) {
   EXPECT_TRUE(r.moves.whole_numbers_are_increments);
   const auto ends = [&](const std::string& text) { return run_text(text, options); };
   EXPECT_EQ(ends("X1000 Y2. Z-500\nG20 X10000 Y1."), "1 2 -0.5; 25.4 25.4 -0.5");
-  EXPECT_EQ(ends("#1=5\nX#1 Y[2+1]"), "5 3 0");                 // variables count whole units
-  EXPECT_EQ(ends("G68 X0 Y0 R90000\nX1000"), "0 1 0");          // angles: 0.001 degrees
+  EXPECT_EQ(ends("#1=5\nX#1 Y[2+1]"), "5 3 0");         // variables count whole units
+  EXPECT_EQ(ends("G68 X0 Y0 R90000\nX1000"), "0 1 0");  // angles: 0.001 degrees
   EXPECT_EQ(ends_of(read_text("G0 X0 Y0 Z0\nG16 X1000 Y90000\n", options)), "0 0 0; 0 1 0");
   EXPECT_EQ(ends("G1 X1000 ,R500 F100\nY1000"), "0.5 0 0; 1 0.5 0; 1 1 0");
-  EXPECT_EQ(ends("G51 X0 Y0 Z0 P2000\nX1000"), "2 0 0");        // a scale is none of them
+  EXPECT_EQ(ends("G51 X0 Y0 Z0 P2000\nX1000"), "2 0 0");  // a scale is none of them
   EXPECT_EQ(ends("G91 G81 X1000 Z-1000 R1000 K2 F100"), "0 0 1; 1 0 1; 1 0 0; 1 0 1; 2 0 1; 2 0 0; 2 0 1");
   EXPECT_EQ(read_clean("G20 G90\nG0 X0 Y0 Z0\nG1 X10000 F100\n", options).moves.moves[1].feed_mm_per_s * 60, 25.4);
   EXPECT_EQ(read_clean("G21 G90\nG0 X0 Y0 Z0\nG1 X10000 F100\n", options).moves.moves[1].feed_mm_per_s * 60, 100);
@@ -67,10 +70,12 @@ TEST(WholeNumbers, AreIncrementsInEveryWordWhereTheControlIsSetSo) {
 }
 
 TEST(WholeNumbers, NothingIsSaidWhereNothingDependsOnThem) {
-  EXPECT_EQ(read_text("G21 G90\nG0 X0 Y0 Z0\nG1 X10. F100 S5000\nG4 P500\nX0\nM30\n", control("fanuc")).messages, Messages{});
-  EXPECT_EQ(read_text("G21 G90\nG0 X0 Y0 Z0\nG1 X10 F100\nM2\n", control("linuxcnc")).messages, Messages{});
-  EXPECT_EQ(read_text("G21 G90\nG0 X0 Y0 Z0\nG5.1 Q1\n#1=50\nG0 X#1\nG65 P9 A5\nM30\nO9\nM99\n", control("fanuc")).messages,
+  EXPECT_EQ(read_text("G21 G90\nG0 X0 Y0 Z0\nG1 X10. F100 S5000\nG4 P500\nX0\nM30\n", control("fanuc")).messages,
             Messages{});
+  EXPECT_EQ(read_text("G21 G90\nG0 X0 Y0 Z0\nG1 X10 F100\nM2\n", control("linuxcnc")).messages, Messages{});
+  EXPECT_EQ(
+      read_text("G21 G90\nG0 X0 Y0 Z0\nG5.1 Q1\n#1=50\nG0 X#1\nG65 P9 A5\nM30\nO9\nM99\n", control("fanuc")).messages,
+      Messages{});
 }
 
 TEST(WholeNumbers, LargerThanAnyMachineTheyAreIncrements) {
@@ -89,8 +94,8 @@ TEST(ModalD, HoldsUntilTheNextOneInWhateverBlockItStands) {
   const std::string head = "G21 G90 G17\nG10 L12 P1 R5.\nG10 L12 P21 R1.5\nT1 M6\nS8000 M3\nG0 X0. Y-20.\n",
                     tail = "G1 Z-1. F400\nG41 Y-10.\nY20.\nG40 X-20.\nM30\n";
   for (const char* dialect : {"fanuc", "haas", "mazak"})
-    for (const char* where : {"G43 H1 D21 Z3.\n", "G0 Z3. D21\n", "D21\nG0 Z3.\n", "G40 D21\nG0 Z3.\n",
-                              "D21\nG0 Z3.\nT1 M6\nS8000 M3\n"}) {
+    for (const char* where :
+         {"G43 H1 D21 Z3.\n", "G0 Z3. D21\n", "D21\nG0 Z3.\n", "G40 D21\nG0 Z3.\n", "D21\nG0 Z3.\nT1 M6\nS8000 M3\n"}) {
       const Read r = read_text(head + where + tail, as(dialect));
       const auto at = std::ranges::find_if(r.moves.moves, [](const Move& m) { return m.end_mm.y() == 20; });
       ASSERT_NE(at, r.moves.moves.end()) << where;
@@ -100,8 +105,9 @@ TEST(ModalD, HoldsUntilTheNextOneInWhateverBlockItStands) {
   EXPECT_EQ(off.moves.moves[3].end_mm.x(), 0);
   const Read unknown = read_text(head + "G43 H1 D7 Z3.\n" + tail, as("fanuc"));
   EXPECT_NE(unknown.messages.at(0).find("no radius is given for D7;"), std::string::npos) << unknown.messages.at(0);
-  EXPECT_EQ(read_text(head + "G0 Z3. D21\nG1 Z-1. F400\nG41 Y-10.\nD1\nY20.\nG40 X-20.\nM30\n", as("fanuc")).messages.back(),
-            "p.nc:10:1: error: D1 is another radius while G41 is active; G40 was expected before [cutter-radius]");
+  EXPECT_EQ(
+      read_text(head + "G0 Z3. D21\nG1 Z-1. F400\nG41 Y-10.\nD1\nY20.\nG40 X-20.\nM30\n", as("fanuc")).messages.back(),
+      "p.nc:10:1: error: D1 is another radius while G41 is active; G40 was expected before [cutter-radius]");
 }
 
 TEST(ModalD, OnLinuxCncBelongsToItsBlock) {
@@ -113,7 +119,8 @@ TEST(ModalD, OnLinuxCncBelongsToItsBlock) {
 // --- additional work offsets of Haas
 
 TEST(HaasOffsets, G154AndG110ToG129) {
-  const std::string inch = "O1\nG20 G90 G17\nT1 M6\nS5000 M3\nG154 P2\nG0 X1. Y1. Z.2\nG1 Z-.1 F20.\nX2.\nG110\nG0 X0 Y0\nM30\n";
+  const std::string inch =
+      "O1\nG20 G90 G17\nT1 M6\nS5000 M3\nG154 P2\nG0 X1. Y1. Z.2\nG1 Z-.1 F20.\nX2.\nG110\nG0 X0 Y0\nM30\n";
   EXPECT_NEAR(cut_mm(read_clean(inch, as("haas"))), 33.02, 1e-9);
   EXPECT_NEAR(cut_mm(read_clean(inch)), 33.02, 1e-9);  // G154 shows the dialect
   const std::string known = "G90 G10 L20 P3 X10. Y0 Z0\nG10 L2 P1 X0 Y0 Z0\nG0 X0 Y0 Z0\n";
@@ -220,11 +227,18 @@ TEST(LinuxCncReferencePoints, AreStoredByG28Point1AndG30Point1) {
 }
 
 TEST(LinuxCncIsStrict, WhereItsInterpreterIs) {
-  for (const char* block : {"G1 G1 X1", "G0 G1 X1", "G17 G18", "M3 M4", "M7 M8", "M8 M9", "M3 M5", "M0 M2", "M48 M49",
-                            "G90 G91", "G54 G55", "G61 G64", "G4 G10 P1", "G28 G4 P1", "G98 G99", "G43 G49", "G40 G41",
-                            "G20 G21", "G93 G94", "M2 M30", "G81", "G80 X1", "(a (b) c)", "D1 G1 X1", "H1 G1 X1",
-                            "G1 X1 ,R5", "G10 L2 P1 X1 G1 Y1", "#1=RO[1.5]"})
-    EXPECT_NE(said(fmt::format("G0 X0 Y0 Z0\nF100\n{}\nM2\n", block), "linuxcnc").find("error"), std::string::npos) << block;
+  for (const char* block : {"G1 G1 X1",  "G0 G1 X1",  "G17 G18",
+                            "M3 M4",     "M7 M8",     "M8 M9",
+                            "M3 M5",     "M0 M2",     "M48 M49",
+                            "G90 G91",   "G54 G55",   "G61 G64",
+                            "G4 G10 P1", "G28 G4 P1", "G98 G99",
+                            "G43 G49",   "G40 G41",   "G20 G21",
+                            "G93 G94",   "M2 M30",    "G81",
+                            "G80 X1",    "(a (b) c)", "D1 G1 X1",
+                            "H1 G1 X1",  "G1 X1 ,R5", "G10 L2 P1 X1 G1 Y1",
+                            "#1=RO[1.5]"})
+    EXPECT_NE(said(fmt::format("G0 X0 Y0 Z0\nF100\n{}\nM2\n", block), "linuxcnc").find("error"), std::string::npos)
+        << block;
   for (const char* block : {"G90 G90.1", "G80 G1 X1", "G80", "G81 X1 Z-1 R1", "G53 G0 X1", "T1 M6 M3", "G92.1 G1 X1",
                             "G1 X1 ; (a (b) c)", "(a) G1 X1 (b)", "G4 P1 M8", "G17 G40 G49 G54 G64 P0.01 G80 G90 G94"})
     EXPECT_EQ(said(fmt::format("G0 X0 Y0 Z0\nF100\n{}\nM2\n", block), "linuxcnc").find("error"), std::string::npos)
@@ -244,9 +258,10 @@ TEST(TextForms, ASemicolonEndsABlockWhereTheManualsPrintItSo) {
   EXPECT_EQ(run_text("X1. ; rapid to the start\n; X2.\nX3. ; (T5)\n"), "1 0 0; 3 0 0");
   EXPECT_EQ(run_linuxcnc("X1. ; X2.\nX3."), "1 0 0; 3 0 0");
   const Read r = read_text("G0 X1. Y0 Z0; X2.\n", InterpreterOptions{.inch = false});
-  EXPECT_EQ(r.messages,
-            Messages{"p.nc:1:13: warning: the words behind `;` are read as a further block, as a Fanuc or a Haas control "
-                     "does; --dialect linuxcnc reads a comment [block-end]"});
+  EXPECT_EQ(
+      r.messages,
+      Messages{"p.nc:1:13: warning: the words behind `;` are read as a further block, as a Fanuc or a Haas control "
+               "does; --dialect linuxcnc reads a comment [block-end]"});
   EXPECT_FALSE(r.moves.moves.back().editable);
 }
 
@@ -283,7 +298,8 @@ TEST(TextForms, LeadersOfTapesAndTextBeforeThePercent) {
 
 TEST(TextForms, ProgramNamesInPlaceOfNumbers) {
   const std::string body = "G21 G90\nG0 X0. Y0. Z0.\nG1 X10. F100\nM30\n";
-  for (const char* name : {"OFinal path\n", "O Final path (v2)\n", "O1234 Final path\n", "%\nOBRACKET_A\n", "o12 op 3\n"})
+  for (const char* name :
+       {"OFinal path\n", "O Final path (v2)\n", "O1234 Final path\n", "%\nOBRACKET_A\n", "o12 op 3\n"})
     EXPECT_EQ(cut_mm(read_clean(name + body, as("haas"))), 10) << name;
   const Read r = read_clean("G0 X0. Y0. Z0.\nM98 P1234\nM30\nO1234 my part\nX5.\nM99\n", as("fanuc"));
   expect_near_mm(r.moves.moves.back().end_mm, {5, 0, 0});
@@ -293,13 +309,15 @@ TEST(TextForms, ProgramNamesInPlaceOfNumbers) {
 
 TEST(TinyArcs, AreWhatTheyAre) {
   const std::string head = "G21 G90\nG0 X10. Y0. Z0.\n";
-  for (const char* arc : {"G2 X10. Y0.001 I0. J0. F100\n", "G2 X10. Y0.001 I0. J0.001 F100\n", "G3 X10.001 Y0. I0.001 J0. F100\n",
-                          "G3 X10. Y0. I0. J0. F100\n", "G2 X10.001 Y0.001 I0.0005 J0.0005 F100\n"}) {
+  for (const char* arc :
+       {"G2 X10. Y0.001 I0. J0. F100\n", "G2 X10. Y0.001 I0. J0.001 F100\n", "G3 X10.001 Y0. I0.001 J0. F100\n",
+        "G3 X10. Y0. I0. J0. F100\n", "G2 X10.001 Y0.001 I0.0005 J0.0005 F100\n"}) {
     const Read r = read_clean(head + arc + "G1 X20.\n");
     EXPECT_LT(length_mm(r.moves, r.moves.moves[1]), 0.01) << arc;
   }
-  EXPECT_NE(read_text(head + "G2 X10. Y1. I0. J0. F100\n").messages.at(0).find("the centre of the arc lies on its start"),
-            std::string::npos);
+  EXPECT_NE(
+      read_text(head + "G2 X10. Y1. I0. J0. F100\n").messages.at(0).find("the centre of the arc lies on its start"),
+      std::string::npos);
 }
 
 TEST(FirstMotion, IsSaidAndKeptWhereItIsDetermined) {

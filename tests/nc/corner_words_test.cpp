@@ -30,7 +30,8 @@ constexpr double kRoot2 = 1.4142135623730951;
 
 TEST(CornerWords, RoundAndChamferTheCornerWithTheNextBlock) {
   for (const char* dialect : {"fanuc", "haas", "mazak"}) {
-    const Read r = read_clean("G21 G90 G17\nG0 X0. Y0. Z0.\nG1 X20. ,R5. F500.\nG1 Y20. ,C2.\nG1 X0.\nM30\n", as(dialect));
+    const Read r =
+        read_clean("G21 G90 G17\nG0 X0. Y0. Z0.\nG1 X20. ,R5. F500.\nG1 Y20. ,C2.\nG1 X0.\nM30\n", as(dialect));
     EXPECT_NEAR(cut_mm(r), 15 + 2.5 * kPi + 13 + 2 * kRoot2 + 18, 1e-9);
     EXPECT_EQ(ends_of(r), "0 0 0; 15 0 0; 20 5 0; 20 18 0; 18 20 0; 0 20 0");
     EXPECT_EQ(r.moves.moves[2].kind, MoveKind::arc);
@@ -59,10 +60,10 @@ TEST(CornerWords, RoundingsTouchLinesAndArcs) {
     const char* text;
     double radius_mm;
   } pairs[] = {
-      {"G1 X20. ,R2.\nG3 X30. Y10. I10. J0.\n", 2},       // up to an arc that begins square
-      {"G1 X20. ,R2.\nG2 X30. Y10. R10.\n", 2},          // the other sense
-      {"G2 X20. Y0. R12. ,R2.\nG1 X20. Y30.\n", 2},       // arc, then line
-      {"G3 X20. Y0. R12. ,R2.\nG1 X40. Y10.\n", 2},       // arc, then line
+      {"G1 X20. ,R2.\nG3 X30. Y10. I10. J0.\n", 2},          // up to an arc that begins square
+      {"G1 X20. ,R2.\nG2 X30. Y10. R10.\n", 2},              // the other sense
+      {"G2 X20. Y0. R12. ,R2.\nG1 X20. Y30.\n", 2},          // arc, then line
+      {"G3 X20. Y0. R12. ,R2.\nG1 X40. Y10.\n", 2},          // arc, then line
       {"G2 X20. Y0. R12. ,R1.5\nG2 X40. Y0. R12.\n", 1.5},   // two bows
       {"G3 X20. Y0. R12. ,R1.5\nG2 X40. Y0. R12.\n", 1.5},   // opposite senses
       {"G2 X20. Y0. R12. ,R1.5\nG3 X40. Y10. R15.\n", 1.5},  // likewise
@@ -77,7 +78,8 @@ TEST(CornerWords, RoundingsTouchLinesAndArcs) {
     EXPECT_NEAR(radius, radius_mm, 1e-9);
     EXPECT_LT(std::abs(r.moves.arcs[corner.arc].sweep_rad), kPi);
     for (const std::size_t m : {2u, 3u}) {
-      const Vec3 before = direction_at(r.moves, r.moves.moves[m - 1], 1), behind = direction_at(r.moves, r.moves.moves[m], 0);
+      const Vec3 before = direction_at(r.moves, r.moves.moves[m - 1], 1),
+                 behind = direction_at(r.moves, r.moves.moves[m], 0);
       EXPECT_NEAR(before.dot(behind), 1, 1e-9);
       EXPECT_EQ(r.moves.moves[m].start_mm, r.moves.moves[m - 1].end_mm);
     }
@@ -121,7 +123,8 @@ TEST(CornerWords, FollowOneAnotherAndLetOtherBlocksStandBetween) {
   EXPECT_NEAR(cut_mm("G1,R5.X20.\nY20.\n"), 30 + corner, 1e-9);
 }
 
-/// The control rounds the contour, then keeps the cutter beside it: inside, the rounding has its radius less the cutter's.
+/// The control rounds the contour, then keeps the cutter beside it: inside, the rounding has its radius less the
+/// cutter's.
 TEST(CornerWords, AreCompensatedUnderG41) {
   const Read r = read_text(
       "G21 G90 G17 F500.\nG10 L12 P1 R2.\nG0 X-10. Y-10. Z0.\nG41 D1 G1 Y0.\nX20. ,R5.\nY20.\nG40 G1 Y30.\nM30\n",
@@ -155,12 +158,12 @@ TEST(CornerWords, SayWhatIsWrong) {
   EXPECT_EQ(said_of("G1 X20. ,R5.\nY20. Z-1.\n"),
             "p.nc:3:9: error: ,R5. beside a move that leaves the plane G17; two moves in it were expected "
             "[corner-word]");
-  EXPECT_EQ(said_of("G1 X20. ,R5.\nY20.\n", "linuxcnc"),
-            "p.nc:3:9: error: ,R5. is no word of a LinuxCNC program; a letter and a number were expected [corner-word]");
+  EXPECT_EQ(
+      said_of("G1 X20. ,R5.\nY20.\n", "linuxcnc"),
+      "p.nc:3:9: error: ,R5. is no word of a LinuxCNC program; a letter and a number were expected [corner-word]");
   EXPECT_EQ(said_of("G1 X20. ,Q5.\nY20.\n"),
             "p.nc:3:9: error: a comma and `Q`; ,R (rounding), ,C (chamfer) or ,A (angle) was expected [corner-word]");
-  EXPECT_EQ(said_of("G1 X20. ,R\nY20.\n"),
-            "p.nc:3:9: error: ,R has no number; a number was expected [no-number]");
+  EXPECT_EQ(said_of("G1 X20. ,R\nY20.\n"), "p.nc:3:9: error: ,R has no number; a number was expected [no-number]");
   EXPECT_EQ(said_of("G1 X20. Y20. ,A45.\n"),
             "p.nc:3:14: error: ,A in a block with both of X and Y; one of them was expected [corner-word]");
 }

@@ -36,8 +36,7 @@ inline InterpreterOptions as(std::string_view dialect) {
 }
 
 /// Reads and interprets; an InputError thrown on the way ends up in `messages` like the rest.
-inline Read read_text(std::string text, const InterpreterOptions& options = units(),
-                      std::string name = "p.nc") {
+inline Read read_text(std::string text, const InterpreterOptions& options = units(), std::string name = "p.nc") {
   Read r;
   std::vector<Diagnostic> found;
   try {

@@ -2,9 +2,10 @@
 import json
 import os
 
-from . import compat, operations, settings, stock, tools
+from . import compat, operations, run, settings, stock, tools
 
 PROGRAM = "program.nc"
+RADIAL_RATIO = 0.4  # typical, of the radial to the tangential force
 
 
 class JobProblem(Exception):
@@ -72,9 +73,14 @@ def write(job, folder, post=None, arguments=None, objects=None, program=None):
     if len(set(job.Fixtures)) > 1:
         out.notes.append("The job has the fixtures %s; Camber sees one part, in the coordinates of the document" %
                          ", ".join(job.Fixtures))
-    with open(out.toml, "w", encoding="utf8") as file:
-        file.write(_head(job) + tables + _material(job) + stock.stock_table(job.Stock.Shape, folder) +
-                   stock.part_table(job, folder) + _simulation(job, box) + _compensation(job) + _adapt(job))
+    others = (stock.stock_table(job.Stock.Shape, folder) + stock.part_table(job, folder) + _simulation(job, box) +
+              _compensation(job) + _adapt(job))
+    # Most presets give the tangential force alone; those that give all do not take the ratio of the radial one.
+    for radial in (True, False):
+        with open(out.toml, "w", encoding="utf8") as file:
+            file.write(_head(job) + tables + _material(job, radial) + others)
+        if "krc_ratio does not belong" not in run.problems_of_job(out.toml):
+            break
     return out
 
 
@@ -89,11 +95,11 @@ def _head(job):
              _quoted(machine if machine.startswith(settings.PRESET) else os.path.abspath(machine))))
 
 
-def _material(job):
+def _material(job, radial):
     text = settings.file_or_name(job, job.CamberMaterial)
     if os.path.isfile(text):
         return "\n[material]\nfile = %s\n" % _quoted(text)
-    return "\n[material]\npreset = %s\n" % _quoted(text)
+    return "\n[material]\npreset = %s\n%s" % (_quoted(text), "krc_ratio = %g\n" % RADIAL_RATIO if radial else "")
 
 
 def _simulation(job, box):

@@ -68,6 +68,23 @@ def machine_presets():
     return list(dict.fromkeys(name for name in re.findall(r"preset:[a-z0-9-]+", text)))
 
 
+def problems_of_job(toml):
+    """What Camber says of a job file when it reads it."""
+    program = executable()
+    if program:
+        return subprocess.run([program, "--effective-config", "predict", toml, "-o", os.path.dirname(toml) + "/none"],
+                              stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              universal_newlines=True, **_hidden()).stderr
+    camber = module()
+    if camber is None:
+        raise NoCamber()
+    try:
+        camber.read_job(toml)
+    except camber.InputError as problem:
+        return "\n".join(str(d) for d in problem.diagnostics)
+    return ""
+
+
 class Run:
     """One command on a job's files. Start it, ask `fraction` and `what` now and then, call cancel() to end it.
 

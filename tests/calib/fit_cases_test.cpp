@@ -1,0 +1,128 @@
+// Recordings of a real control (shared data) of which fits once went wrong, each for one reason.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "calib/fit_feed.h"
+#include "feedmodel/control_options.h"
+#include "kinematics/rotary_options.h"
+#include "nc/interpreter.h"
+#include "nc/program.h"
+#include "test_paths.h"
+#include "tests/support/temp_folder.h"
+
+namespace camber::calib {
+namespace {
+
+class FitCase : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(data_)) GTEST_SKIP() << "the recordings (shared data) are not here";
+  }
+
+  machine::Machine start(const std::string& file) {
+    Diagnostics diagnostics;
+    return machine::read_machine(data_ + file, diagnostics);
+  }
+
+  /// `every`: keeps every n-th sample.
+  FeedRun run(const machine::Machine& machine, const std::string& program, const std::string& trace, int every = 1,
+              double tool_length_mm = 60) {
+    const std::string csv = folder_ / "trace.csv";
+    const std::string keep = every > 1 ? fmt::format(" | awk 'NR==1||NR%{}==0'", every) : "";
+    if (std::system(("zstd -dcq '" + data_ + trace + "'" + keep + " > '" + csv + "'").c_str()) != 0)
+      throw std::runtime_error("zstd is needed to read the traces");
+    Diagnostics diagnostics;
+    nc::InterpreterOptions options;
+    options.rotary_axes = kinematics::rotary_options(machine);
+    options.tool_offsets[1].length_mm = tool_length_mm;
+    FeedRun out;
+    out.program_name = program;
+    out.program = nc::interpret(nc::read_program(SourceText::read(data_ + program), diagnostics),
+                                feedmodel::interpreter_options(machine, options), diagnostics);
+    out.trace = read_trace(csv, diagnostics);
+    return out;
+  }
+
+  const std::string data_ = CAMBER_SHARED_DATA_DIR "/";
+  tests::TempFolder folder_;
+};
+
+const FitParameter& parameter(const FitFeedResult& fit, const std::string& name) {
+  for (const FitParameter& p : fit.parameters)
+    if (p.name == name) return p;
+  throw std::runtime_error("no parameter " + name);
+}
+
+TEST_F(FitCase, VelocityFeedForward) {
+  const std::string folder = "cases/fitfeed_feedforward/";
+  const machine::Machine machine = start(folder + "start.toml");
+  const FitFeedResult fit = fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv.zst")}, machine, {});
+  const double gain[] = {31, 37, 26}, forward[] = {50, 40, 55}, lag_s[] = {0.0035, 0.0045, 0.005};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(fit.machine.axis[i].position_gain_per_s / gain[i], 1, 0.02) << i;
+    EXPECT_NEAR(fit.machine.axis[i].feed_forward_percent / forward[i], 1, 0.02) << i;
+    EXPECT_NEAR(fit.machine.axis[i].velocity_lag_s / lag_s[i], 1, 0.02) << i;
+    EXPECT_LT(fit.drives[i].held_out_rms_mm, 0.0002) << i;
+    EXPECT_EQ(fit.machine.axis[i].filter_s, 0) << i;
+  }
+  EXPECT_NEAR(fit.machine.rotary[0].position_gain_per_s / 22, 1, 0.02);
+  EXPECT_NEAR(fit.machine.rotary[2].position_gain_per_s / 34, 1, 0.02);
+  for (const FitParameter& p : fit.parameters)
+    if (p.written && p.std_error && p.name.find("gain") != p.name.npos)
+      EXPECT_LT(*p.std_error, 0.3 * p.value) << p.name;
+  EXPECT_LT(fit.held_out.part_time_percent, 0.5);
+}
+
+TEST_F(FitCase, TopSpeedThatAnOverlapExceeds) {
+  const std::string folder = "cases/fitfeed_topspeed/";
+  const machine::Machine machine = start(folder + "start.toml");
+  const FitFeedResult fit = fit_feed({run(machine, folder + "exact_path.ngc", folder + "exact_path.csv.zst"),
+                                      run(machine, folder + "blended.ngc", folder + "blended.csv.zst")},
+                                     machine, {});
+  EXPECT_NEAR(parameter(fit, "axis.a.max_velocity_deg_per_min").value, 1920, 0.005 * 1920);
+  EXPECT_NEAR(parameter(fit, "axis.c.max_velocity_deg_per_min").value, 4800, 0.005 * 4800);
+  for (const RunAccuracy& one : fit.runs) EXPECT_LT(std::abs(one.accuracy.time_error_percent), 0.5) << one.program_name;
+}
+
+TEST_F(FitCase, RapidsInWhichAnotherAxisIsAtItsLimit) {
+  const std::string folder = "cases/fitfeed_rapid_share/";
+  const machine::Machine machine = start(folder + "start.toml");
+  const FitFeedResult fit = fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv.zst")}, machine, {});
+  EXPECT_FALSE(parameter(fit, "axis.z.max_velocity_mm_per_min").written);
+  EXPECT_TRUE(std::isinf(fit.machine.axis[2].max_velocity_mm_per_s));
+  EXPECT_NEAR(parameter(fit, "axis.c.max_velocity_deg_per_min").value, 4800, 24);
+  for (const machine::Axis& axis : fit.machine.axis) EXPECT_EQ(axis.filter_s, 0);
+}
+
+TEST_F(FitCase, ExactPathAlone) {
+  const std::string folder = "cases/fitfeed_crash/";
+  const machine::Machine machine = start(folder + "start.toml");
+  const FitFeedResult fit =
+      fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv.zst", 1, 80)}, machine, {});
+  EXPECT_TRUE(fit.converged) << fit.message;
+  EXPECT_NEAR(fit.machine.axis[0].acceleration_mm_per_s2, 700, 7);
+  EXPECT_NEAR(deg_from_rad(fit.machine.rotary[2].acceleration_rad_per_s2), 600, 6);
+  EXPECT_FALSE(parameter(fit, "control.stop_acceleration_share").written);
+}
+
+TEST_F(FitCase, EverySecondCycle) {
+  machine::Machine machine = start("cases/fitfeed_decimated/start_p1.toml");
+  const std::string programs = "linuxcnc5/programs/", traces = "linuxcnc5/";
+  std::vector<FeedRun> runs;
+  for (const std::string name : {"rotary_g61", "rotary_g64", "combined_g94_g61", "combined_g94_g64"})
+    runs.push_back(run(machine, programs + name + ".ngc", traces + name + "_t.csv.zst", 2, 80));
+  const FitFeedResult fit = fit_feed(runs, machine, {});
+  EXPECT_DOUBLE_EQ(fit.machine.control.period_s, 0.001);
+  EXPECT_NEAR(fit.machine.control.block_time_s, 0.00102, 1e-6);
+  const FitParameter& y = parameter(fit, "axis.y.acceleration_mm_per_s2");
+  if (y.written) EXPECT_NEAR(y.value, 560, 0.03 * 560);
+}
+
+}  // namespace
+}  // namespace camber::calib
