@@ -110,7 +110,7 @@ void look_at_depth(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 void look_at_power(const Evidence& e, Diagnostics& diagnostics) {
-  constexpr double kMost_W = 60e3, kBroken = 0.25;  // of a milling spindle; of the diameter
+  constexpr double kMost_W = 60e3, kBroken = 0.5;  // of a milling spindle; of the diameter
   for (const ToolWork& work : e.tools) {
     if (work.power_W.empty() || work.cutting_speed_m_per_min.empty()) continue;
     const double power = work.power_W.at(0.95), speed = work.cutting_speed_m_per_min.median() / 60;  // m/s

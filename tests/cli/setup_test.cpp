@@ -274,13 +274,15 @@ TEST(SetUp, AllowanceLargerThanTheCut) {
 TEST(SetUp, CutAboveTheFlutes) {
   const std::string neck = "flute_length_mm = 1.0\nneck_diameter_mm = 2.0\nneck_length_mm = 20\n[material]";
   expect_refused({.job = replaced(kJob, "[material]", neck) + "collisions = \"off\"\n"},
-                 "p.nc:6:1: error: T1 meets material 1.2 mm above its tip, but flute_length_mm = 1; a cut that its "
+                 "p.nc:6:1: error: T1 meets material 2.0 mm above its tip, but flute_length_mm = 1; a cut that its "
                  "flutes reach was expected [cut-above-flutes]\n    G1 X12 F900\n    ^\n");
 }
 
 TEST(SetUp, CutAboveTheOverhang) {
   expect_refused({.job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 1.5")},
-                 "p.nc:6:1: error: T1 meets material 1.7 mm above its tip, but overhang_mm = 1.5; a cut that ends "
+                 "job.toml: warning: T1: overhang_mm = 1.5 is less than its diameter, 4 mm; at least that was expected "
+                 "(holder face to tip) [tool-slender]\n"
+                 "p.nc:6:1: error: T1 meets material 2.0 mm above its tip, but overhang_mm = 1.5; a cut that ends "
                  "below the holder was expected [cut-above-overhang]\n    G1 X12 F900\n    ^\n");
 }
 
