@@ -446,6 +446,7 @@ class DriveSearch {
 
   Candidate best() {
     search_models(0);
+    consider_backlash();
     bool better = false;  // the last one was the best: the next may be better still
     for (double filter_s = 0.002; filter_s <= 0.13 && (better || best_.held_out_rms > kEnoughMm); filter_s *= 2)
       better = search_models(filter_s);
@@ -456,11 +457,7 @@ class DriveSearch {
       if (!consider({from.free, from.filter_s + step_s, from.lead_s}, best_))
         consider({from.free, from.filter_s - step_s, from.lead_s}, best_);
     }
-    if (best_.held_out_rms > options_.better_by_mm) {
-      Model model = best_.model;
-      model.free[backlash] = true;
-      consider(model, best_);
-    }
+    consider_backlash();
     add_ambiguity(best_, tried_);
     return best_;
   }
@@ -484,6 +481,13 @@ class DriveSearch {
       if (tried_.back().fitted_rms < before.fitted_rms || !std::isfinite(before.held_out_rms)) before = tried_.back();
     }
     return better;
+  }
+
+  void consider_backlash() {
+    if (best_.model.free[backlash] || best_.held_out_rms < 2 * options_.better_by_mm) return;
+    Model model = best_.model;
+    model.free[backlash] = true;
+    consider(model, best_);
   }
 
   bool consider(const Model& model, const Candidate& before) {

@@ -395,10 +395,6 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
     if (p.assumed) {
       result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
                                    "usual value: the traces tell it only together with the accelerations", true});
-    } else if (p.together) {
-      result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
-                                   fmt::format("the traces tell it only together with others ({})", what_tells(p.name)),
-                                   true, p.stretches});
     } else if (p.determined) {
       const std::string note = p.from_ramps ? "constant accelerations of the commands" : logged ? source_of(p) : "";
       result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, note, true, p.stretches});

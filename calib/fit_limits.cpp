@@ -25,7 +25,6 @@ constexpr double kTimeNoise = 0.001;     // s; a part's time is known to about a
 constexpr double kTimeFraction = 0.002;  // and to this fraction of itself
 constexpr double kLogFraction = 0.003;   // a model's error grows with the time; stretches of a log are long
 constexpr double kUsualArcNormal = 0.87, kUsualArcTangential = 0.5, kUsualStop = 0.5;
-constexpr int kFewestTogether = 3;    // groups of parts that a value must act on to be written at all
 constexpr double kPriorWeight = 0.3;  // of a logarithm: start values count where times tell nothing
 constexpr double kTelling = 0.3;      // of what a part's time is known to, by a change by a factor e
 constexpr double kNoTime = 1e-9;      // s
@@ -501,12 +500,8 @@ LimitFit fit_once(const std::vector<TimedLines>& data, const Machine& start, std
   set_errors(fit, data, start, logs, residuals.size());
 
   const Machine fitted = fit.whole = machine_at(start, fit.parameters, logs.data());
-  for (LimitParameter& p : fit.parameters) {
-    // No limit at all would be worse than a value that the times tell only together with others.
-    p.together = !p.determined && p.acts && std::isinf(p.get(start)) && p.stretches >= kFewestTogether &&
-                 p.fitted.std_error < p.fitted.value;
-    if (p.determined || p.together) p.set(fit.machine, p.fitted.value);
-  }
+  for (const LimitParameter& p : fit.parameters)
+    if (p.determined) p.set(fit.machine, p.fitted.value);
   std::vector<double> milliseconds;
   for (const TimedLines& lines : data) {
     const auto planned = planned_times_s(lines, fitted, feedmodel::plan_motion(*lines.program, fitted).times);

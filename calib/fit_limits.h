@@ -54,9 +54,8 @@ struct LimitParameter {
   bool determined = false;  ///< determined by the data
   /// `fitted` was read in the commands of the traces (traced_acceleration.h) and stays.
   bool from_ramps = false;
-  bool acts = false;      ///< it changes some time
-  bool together = false;  ///< written all the same: the start file has no limit, and the times tell it with others
-  bool assumed = false;   ///< kept at `usual`, since the times tell it only together with others
+  bool acts = false;     ///< it changes some time
+  bool assumed = false;  ///< kept at `usual`, since the times tell it only together with others
   /// Fraction of its squared derivatives that comes from logged times.
   double logged_fraction = 0;
   int stretches = 0;  ///< groups of parts whose times it changes

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "calib/column_map.h"
 
@@ -26,6 +27,8 @@ class EdgeReader {
                                            "the JSON cannot be read from here on; a Sinumerik Edge recording was "
                                            "expected",
                                            kCheck)});
+    } catch (const json::exception&) {
+      fail("the JSON has a number out of range; a Sinumerik Edge recording was expected");
     }
     read_header(member(document, "Header", "the recording"));
     const json& payload = member(document, "Payload", "the recording");

@@ -111,8 +111,8 @@ TEST_F(BrokenRecordings, TableOfNumbers) {
 }
 
 TEST_F(BrokenRecordings, TwinCat) {
-  expect_mapped("Name,Setpos,Name,Actpos\n0,0,0,0\n1,0.5,1,0.4\n2,1,2,0.9\nEOF\n",
-                "[t]\nunit = \"ms\"\nindex = 1\n[x_cmd]\nname = \"Setpos\"\n[x_act]\nname = \"Actpos\"\n");
+  expect_mapped("Name,X\n131900000000000000,1\n131900000000020000,2\n131900000000040000,3\n",
+                "[x_act]\nname = \"X\"\n");
 }
 
 TEST_F(BrokenRecordings, SinumerikXml) {

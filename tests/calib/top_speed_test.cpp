@@ -25,8 +25,8 @@ TEST(TopSpeed, OfAnAxisThatMovesAlone) {
 
 /// C is at its limit in each of these rapids; Z never where nothing else is.
 TEST(TopSpeed, BelongsToTheAxisThatEveryOtherOneStaysBehind) {
-  const auto top = top_speeds(
-      {held({0, 0, 9.6, 0, 0, 80}, 0.5), held({12, 0, 4, 10.7, 0, 80}, 0.5), held({6, 0, 0, 16, 0, 80}, 0.5)});
+  const auto top = top_speeds({held({0, 0, 9.6, 0, 0, 80}, 0.5), held({12, 0, 4, 10.7, 0, 80}, 0.5),
+                               held({6, 0, 0, 16, 0, 80}, 0.5), held({3, 0, 2, 5, 0, 80}, 0.5)});
   ASSERT_TRUE(top[5].limit);
   EXPECT_DOUBLE_EQ(top[5].limit->value, 80);
   EXPECT_FALSE(top[2].limit);
