@@ -35,18 +35,17 @@ void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
-  constexpr double kOdd = 0.35, kMeaningless = 0.75;
+  constexpr double kOdd = 0.6, kMeaningless = 0.75;  // runs in and out are long beside small cuts
   if (!e.survey || e.elsewhere) return;
   double beside = 0, all = 0;
   for (const ToolWork& work : e.tools) beside += work.cut.beside_mm, all += work.cut.length_mm;
   if (all <= 0 || beside <= kOdd * all) return;
-  const auto first =
-      std::ranges::find_if(e.survey->moves, [](const auto& m) { return m.beside_mm > 0.5 * m.length_mm; });
+  const auto longest = std::ranges::max_element(e.survey->moves, {}, [](const auto& m) { return m.beside_mm; });
   const nc::Extents tips = simulate::tip_extents(e.program.moves, e.program.selected, e.program.holes);
   const Vec3 &lo = e.stock->min_mm, &hi = e.stock->max_mm;
   diagnostics.add(e.at_move(
       beside > kMeaningless * all ? Severity::error : Severity::warning,
-      static_cast<std::uint32_t>(first - e.survey->moves.begin()),
+      static_cast<std::uint32_t>(longest - e.survey->moves.begin()),
       fmt::format(
           "{:.0f} % of the cutting path runs beside or above the stock: the tip cuts from X{:.2f} Y{:.2f} Z{:.2f} "
           "to X{:.2f} Y{:.2f} Z{:.2f}, the stock lies from X{:.2f} Y{:.2f} Z{:.2f} to X{:.2f} Y{:.2f} Z{:.2f}; a "

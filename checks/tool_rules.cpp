@@ -158,7 +158,8 @@ void look_at_proportions(const Evidence& e, Diagnostics& diagnostics) {
                                "tool-proportions"));
     odd(Severity::warning,
         {"flutes", static_cast<double>(t.flutes), 1, std::floor(std::max(6.0, 4 + 0.6 * d)), "", true});
-    odd(Severity::error, {"youngs_modulus_GPa", t.youngs_modulus_MPa / 1000, 50, 1200, "", true});
+    odd(Severity::error, {"youngs_modulus_GPa", t.youngs_modulus_MPa / 1000, 50, 1200, " (or inf)",
+                          std::isfinite(t.youngs_modulus_MPa)});
     odd(Severity::warning, {"root_stiffness_N_per_um", t.root_stiffness_N_per_mm / 1000, 0.5, 1000, " (or inf)", true});
     odd(Severity::warning, {"flute_length_mm", t.flute_length_mm.value_or(d), 0.1 * d, std::max(12 * d, 10.0), "",
                             t.flute_length_mm.has_value()});

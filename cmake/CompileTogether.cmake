@@ -9,15 +9,15 @@ if(CAMBER_UNITY AND Python3_FOUND)
   file(WRITE ${PROJECT_BINARY_DIR}/headers.cpp "")
   set(headers <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <limits> <map> <memory> <numbers>
     <numeric> <optional> <set> <span> <sstream> <string> <string_view> <unordered_map> <variant> <vector> <Eigen/Core>
-    <Eigen/Geometry> <fmt/format.h> <tbb/parallel_for.h>)
+    <Eigen/Geometry> <fmt/format.h>)
   add_library(camber_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
   target_link_libraries(camber_headers PRIVATE camber_options TBB::tbb fmt::fmt)
-  target_precompile_headers(camber_headers PRIVATE ${headers})
+  target_precompile_headers(camber_headers PRIVATE ${headers} <tbb/parallel_for.h>)
   if(CAMBER_TESTS)
     # Precompiled headers ask for the same optimization.
     find_package(GTest REQUIRED)
     add_library(camber_plain_test_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
-    target_link_libraries(camber_plain_test_headers PRIVATE camber_options TBB::tbb fmt::fmt GTest::gtest)
+    target_link_libraries(camber_plain_test_headers PRIVATE camber_options fmt::fmt GTest::gtest)
     target_compile_options(camber_plain_test_headers PRIVATE -fPIC -O0)
     target_precompile_headers(camber_plain_test_headers PRIVATE ${headers} <gtest/gtest.h>
       <nlohmann/json.hpp>)

@@ -46,6 +46,14 @@ Move& BlockInterpreter::add_move(MoveKind kind, const Vec3& end_mm) {
   if (!options_.rotary_axes.empty() && kind != MoveKind::dwell) {
     check_rotary_offset();
     move.open_axes = static_cast<std::uint8_t>(open_axes_of_move() & 7U);
+    if (rotary_target_ && state_.tip_control != TipControl::off && move.open_axes != 0 && !open_cause_.empty()) {
+      error(
+          words_.offset(), "position-open",
+          fmt::format("rotary axes turn under tool-centre-point control after {}, which leaves the tip open; X, Y and "
+                      "Z in G90 were expected before or in this block",
+                      open_cause_));
+      open_axes_ = move.open_axes = 0;
+    }
     move.start_open = start_open_;
     const auto& targets = out_.machine_targets;
     start_open_ = move.open_axes != 0 || (!targets.empty() && targets.back().move == out_.moves.size());

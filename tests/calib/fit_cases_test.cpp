@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
+#include <fstream>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -13,18 +13,14 @@
 #include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
-#include "test_paths.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::calib {
 namespace {
 
 class FitCase : public ::testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(data_)) GTEST_SKIP() << "the recordings (shared data) are not here";
-  }
-
   machine::Machine start(const std::string& file) {
     Diagnostics diagnostics;
     return machine::read_machine(data_ + file, diagnostics);
@@ -33,10 +29,15 @@ class FitCase : public ::testing::Test {
   /// `every`: keeps every n-th sample.
   FeedRun run(const machine::Machine& machine, const std::string& program, const std::string& trace, int every = 1,
               double tool_length_mm = 60) {
-    const std::string csv = folder_ / "trace.csv";
-    const std::string keep = every > 1 ? fmt::format(" | awk 'NR==1||NR%{}==0'", every) : "";
-    if (std::system(("zstd -dcq '" + data_ + trace + "'" + keep + " > '" + csv + "'").c_str()) != 0)
-      throw std::runtime_error("zstd is needed to read the traces");
+    std::string csv = tests::unpacked_data(trace);
+    if (every > 1) {
+      std::ifstream in(csv);
+      csv = folder_ / "trace.csv";
+      std::ofstream out(csv);
+      std::string row;
+      for (int number = 1; std::getline(in, row); ++number)
+        if (number == 1 || number % every == 0) out << row << '\n';
+    }
     Diagnostics diagnostics;
     nc::InterpreterOptions options;
     options.rotary_axes = kinematics::rotary_options(machine);
@@ -49,7 +50,7 @@ class FitCase : public ::testing::Test {
     return out;
   }
 
-  const std::string data_ = CAMBER_SHARED_DATA_DIR "/";
+  const std::string data_ = tests::data_path("") + "/";
   tests::TempFolder folder_;
 };
 
@@ -62,7 +63,7 @@ const FitParameter& parameter(const FitFeedResult& fit, const std::string& name)
 TEST_F(FitCase, VelocityFeedForward) {
   const std::string folder = "cases/fitfeed_feedforward/";
   const machine::Machine machine = start(folder + "start.toml");
-  const FitFeedResult fit = fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv.zst")}, machine, {});
+  const FitFeedResult fit = fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv")}, machine, {});
   const double gain[] = {31, 37, 26}, forward[] = {50, 40, 55}, lag_s[] = {0.0035, 0.0045, 0.005};
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(fit.machine.axis[i].position_gain_per_s / gain[i], 1, 0.02) << i;
@@ -82,8 +83,8 @@ TEST_F(FitCase, VelocityFeedForward) {
 TEST_F(FitCase, TopSpeedThatAnOverlapExceeds) {
   const std::string folder = "cases/fitfeed_topspeed/";
   const machine::Machine machine = start(folder + "start.toml");
-  const FitFeedResult fit = fit_feed({run(machine, folder + "exact_path.ngc", folder + "exact_path.csv.zst"),
-                                      run(machine, folder + "blended.ngc", folder + "blended.csv.zst")},
+  const FitFeedResult fit = fit_feed({run(machine, folder + "exact_path.ngc", folder + "exact_path.csv"),
+                                      run(machine, folder + "blended.ngc", folder + "blended.csv")},
                                      machine, {});
   EXPECT_NEAR(parameter(fit, "axis.a.max_velocity_deg_per_min").value, 1920, 0.005 * 1920);
   EXPECT_NEAR(parameter(fit, "axis.c.max_velocity_deg_per_min").value, 4800, 0.005 * 4800);
@@ -93,7 +94,7 @@ TEST_F(FitCase, TopSpeedThatAnOverlapExceeds) {
 TEST_F(FitCase, RapidsInWhichAnotherAxisIsAtItsLimit) {
   const std::string folder = "cases/fitfeed_rapid_share/";
   const machine::Machine machine = start(folder + "start.toml");
-  const FitFeedResult fit = fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv.zst")}, machine, {});
+  const FitFeedResult fit = fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv")}, machine, {});
   EXPECT_FALSE(parameter(fit, "axis.z.max_velocity_mm_per_min").written);
   EXPECT_TRUE(std::isinf(fit.machine.axis[2].max_velocity_mm_per_s));
   EXPECT_NEAR(parameter(fit, "axis.c.max_velocity_deg_per_min").value, 4800, 24);
@@ -104,7 +105,7 @@ TEST_F(FitCase, ExactPathAlone) {
   const std::string folder = "cases/fitfeed_crash/";
   const machine::Machine machine = start(folder + "start.toml");
   const FitFeedResult fit =
-      fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv.zst", 1, 80)}, machine, {});
+      fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv", 1, 80)}, machine, {});
   EXPECT_TRUE(fit.converged) << fit.message;
   EXPECT_NEAR(fit.machine.axis[0].acceleration_mm_per_s2, 700, 7);
   EXPECT_NEAR(deg_from_rad(fit.machine.rotary[2].acceleration_rad_per_s2), 600, 6);
@@ -116,7 +117,7 @@ TEST_F(FitCase, EverySecondCycle) {
   const std::string programs = "linuxcnc5/programs/", traces = "linuxcnc5/";
   std::vector<FeedRun> runs;
   for (const std::string name : {"rotary_g61", "rotary_g64", "combined_g94_g61", "combined_g94_g64"})
-    runs.push_back(run(machine, programs + name + ".ngc", traces + name + "_t.csv.zst", 2, 80));
+    runs.push_back(run(machine, programs + name + ".ngc", traces + name + "_t.csv", 2, 80));
   const FitFeedResult fit = fit_feed(runs, machine, {});
   EXPECT_DOUBLE_EQ(fit.machine.control.period_s, 0.001);
   EXPECT_NEAR(fit.machine.control.block_time_s, 0.00102, 1e-6);

@@ -153,9 +153,10 @@ TEST(Plausibility, ToolThatTheCommentsContradict) {
 }
 
 TEST(Plausibility, OverhangTenTimesTooLongOrTooShort) {
-  EXPECT_EQ(roof("overhang_mm = 30.0", "overhang_mm = 300.0", "tool-slender"),
-            "job.toml: error: T1: overhang_mm = 300 is 50.0 times its diameter; no such tool mills: up to 15 times was "
-            "expected [tool-slender]\n");
+  EXPECT_EQ(
+      roof("overhang_mm = 30.0", "overhang_mm = 300.0", "tool-slender"),
+      "job.toml: error: T1: overhang_mm = 300 is 50.0 times its diameter; no more than 15 times was expected: a longer "
+      "tool is no static beam (diameter_mm and overhang_mm are in mm) [tool-slender]\n");
   EXPECT_EQ(roof("overhang_mm = 30.0", "overhang_mm = 762.0", "tool-slender"),
             "job.toml: error: T1: overhang_mm = 762 is longer than any milling tool; up to 400 mm was expected "
             "[tool-slender]\n");
@@ -203,7 +204,7 @@ TEST(Plausibility, CoefficientsInOtherUnits) {
 TEST(Plausibility, StockTooHigh) {
   EXPECT_EQ(
       roof("[40, 20, 2]", "[40, 20, 22]", "stock-top"),
-      "p.nc:5: error: the program rises to Z20 at most, but the stock's top is at Z22; a program that comes clear "
+      "p.nc:91: error: the program rises to Z20 at most, but the stock's top is at Z22; a program that comes clear "
       "of the stock was expected (is the stock too high, or its zero another one?) [stock-top]\n");
 }
 

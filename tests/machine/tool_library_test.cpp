@@ -10,6 +10,7 @@
 #include "machine/quantity.h"
 #include "machine/tool_proposal.h"
 #include "test_paths.h"
+#include "tests/support/test_data.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::machine {
@@ -108,9 +109,9 @@ int compare(const std::string& folder) {
 TEST(ToolLibraries, TellWhatTheirFormatsSay) { EXPECT_EQ(compare(kTools), 67); }
 
 TEST(ToolLibraries, OfOtherProgramsTellWhatTheirFormatsSay) {
-  const std::string folder = CAMBER_SHARED_DATA_DIR "/tools/";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no ../shared/data";
-  EXPECT_EQ(compare(folder), 276);
+  const std::string folder = tests::unshipped_data("tools");
+  if (folder.empty()) GTEST_SKIP() << tests::not_shipped("tools");
+  EXPECT_EQ(compare(folder + "/"), 276);
 }
 
 TEST(ToolLibraries, WithTheSameCuttersGiveTheSameTools) {

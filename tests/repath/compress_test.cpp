@@ -35,6 +35,9 @@ double distance_mm(const std::string& before, const std::string& after, double s
 
 const std::string kHead = "G21 G90 G17\nS1000 M3\nG0 X10. Y0. Z0.\nG1 F500\n";
 
+/// Of two paths 0.01 mm apart, measured at points every 0.01 mm: the nearest may be half of that beside.
+constexpr double kSampled_mm = 0.0112;
+
 TEST(Compress, ARunOfG1BecomesAnArcAndTheRestStays) {
   const std::string text = kHead + arc_words(10, 2.0, 60) + "G0 Z5.\nM30\n";
   const std::string out = compressed(text);
@@ -132,7 +135,7 @@ TEST(Compress, WordsThatChangeWhatIsInForceEndARunAndStandWhereTheyStood) {
     const auto line = other.find('\n', other.find("X0.000 Y20.000"));
     other.insert(line, word);
     EXPECT_NE(compressed(other).find(word), std::string::npos) << word;
-    EXPECT_LE(distance_mm(other, compressed(other)), 0.0101);
+    EXPECT_LE(distance_mm(other, compressed(other)), kSampled_mm);
   }
 }
 
@@ -143,14 +146,15 @@ TEST(Compress, ABlockThatMayBeSkippedSplitsARunOnBothReadings) {
     options.skip_slash_blocks = skips;
     return nc::read_clean(text, options).moves;
   };
-  for (const char* skipped : {"/X25. Y30.", "/X-3.", "/Z-2.", "/X-3. Y21. F300", "/M8", "/G4 P100", "/G91 X1.\nG90"}) {
+  for (const char* skipped : {"/X25. Y30.", "/X-3.", "/Z-2.", "/X-3. Y21. F300", "/M8", "/G4 X0.1", "/G91 X1.\nG90"}) {
     std::string text = half_circle("", " F800");
     const auto line = text.find('\n', text.find("X0.000 Y20.000"));
     text.insert(line + 1, std::string(skipped) + "\n");
     const std::string out = compressed(text);
-    EXPECT_LT(lines_of(out), 20u) << out;
+    // Behind a Z that may be skipped the height is not known: those lines stay.
+    if (std::string_view(skipped) != "/Z-2.") EXPECT_LT(lines_of(out), 20u) << out;
     for (const bool skips : {false, true})
-      EXPECT_LE(tests::hausdorff_mm(read(text, skips), read(out, skips), 0.01), 0.0101) << skipped << skips << out;
+      EXPECT_LE(tests::hausdorff_mm(read(text, skips), read(out, skips), 0.01), kSampled_mm) << skipped << skips << out;
   }
 }
 
@@ -172,7 +176,7 @@ TEST(Compress, NamesTheLineOfTheLargestKink) {
                         10 * std::cos(0.2) - 10 * std::cos(i * 0.03 + 0.2));
   const Read r = nc::read_clean(text + "M30\n");
   CompressOptions options;
-  options.fit.max_kink_rad = kPi;
+  options.fit.max_kink_rad = 0.5 * kPi;
   const Compression out = compress(r.program, r.moves, options);
   ASSERT_GT(out.max_kink_rad, 0);
   std::vector<std::string> lines;

@@ -17,17 +17,17 @@ FormErrorPoints those(std::vector<FormErrorPoint> points) {
 }
 
 std::vector<FormErrorPoint> two_points() {
-  return {{{1, 2, -3.25}, {0, 0, 1}, 12.3456, 2.0456, 0.0075, 13.5, std::nan(""), 42, 3},
-          {{0, 0, 0}, {0, 0.6, 0.8}, -0.5, 0, 0.01, std::nan(""), 0}};
+  return {{{1, 2, -3.25}, Vec3::Zero(), {0, 0, 1}, 12.3456, 2.0456, 0.0075, 13.5, std::nan(""), 42, 3},
+          {{0, 0, 0}, Vec3::Zero(), {0, 0.6, 0.8}, -0.5, 0, 0.01, std::nan(""), 0}};
 }
 
 TEST(FormErrorCsv, HasARowAPoint) {
   const tests::TempFolder folder;
   write_form_error_csv(folder / "e.csv", those(two_points()));
   EXPECT_EQ(tests::file_text(folder / "e.csv"),
-            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool\n"
-            "1.0000,2.0000,-3.2500,0.00000,0.00000,1.00000,12.346,10.300,2.046,13.500,0.007500,42,3\n"
-            "0.0000,0.0000,0.0000,0.00000,0.60000,0.80000,-0.500,-0.500,0.000,,0.010000,0,0\n");
+            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid\n"
+            "1.0000,2.0000,-3.2500,0.00000,0.00000,1.00000,12.346,10.300,2.046,13.500,0.007500,42,3,1\n"
+            "0.0000,0.0000,0.0000,0.00000,0.60000,0.80000,-0.500,-0.500,0.000,,0.010000,0,0,1\n");
 }
 
 TEST(FormErrorVtp, HoldsEveryArray) {
@@ -58,7 +58,7 @@ TEST(FormErrorVtp, LeavesTheTotalOutWhereThereIsNoMesh) {
 FormErrorPoints many_points(std::size_t count) {
   return {count, [](std::size_t i) {
             const double v = static_cast<double>(i);
-            FormErrorPoint point{{v, -v, 0.5 * v}, {0, 0, 1}, 0.25 * v, 0, 1};
+            FormErrorPoint point{{v, -v, 0.5 * v}, Vec3::Zero(), {0, 0, 1}, 0.25 * v, 0, 1};
             point.block = static_cast<std::uint32_t>(i);
             point.tool = 7;
             return point;
