@@ -35,7 +35,7 @@ void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
-  constexpr double kOdd = 0.6, kMeaningless = 0.75;  // runs in and out are long beside small cuts
+  constexpr double kOdd = 0.5, kMeaningless = 0.75;  // runs in and out are long beside small cuts
   if (!e.survey || e.elsewhere) return;
   double beside = 0, all = 0;
   for (const ToolWork& work : e.tools) beside += work.cut.beside_mm, all += work.cut.length_mm;

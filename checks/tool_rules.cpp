@@ -12,6 +12,8 @@
 namespace camber::checks {
 namespace {
 
+constexpr double kRigidFrom_GPa = 1e8, kRigidTo_GPa = 1e10;
+
 using machine::Tool;
 using machine::ToolProposal;
 using machine::ToolType;
@@ -158,8 +160,10 @@ void look_at_proportions(const Evidence& e, Diagnostics& diagnostics) {
                                "tool-proportions"));
     odd(Severity::warning,
         {"flutes", static_cast<double>(t.flutes), 1, std::floor(std::max(6.0, 4 + 0.6 * d)), "", true});
-    odd(Severity::error, {"youngs_modulus_GPa", t.youngs_modulus_MPa / 1000, 50, 1200, " (or inf)",
-                          std::isfinite(t.youngs_modulus_MPa)});
+    // 1e8 GPa and more is written to make a tool rigid; MPa and Pa by mistake lie outside.
+    const double modulus_GPa = t.youngs_modulus_MPa / 1000;
+    odd(Severity::error,
+        {"youngs_modulus_GPa", modulus_GPa, 50, 1200, "", modulus_GPa < kRigidFrom_GPa || modulus_GPa > kRigidTo_GPa});
     odd(Severity::warning, {"root_stiffness_N_per_um", t.root_stiffness_N_per_mm / 1000, 0.5, 1000, " (or inf)", true});
     odd(Severity::warning, {"flute_length_mm", t.flute_length_mm.value_or(d), 0.1 * d, std::max(12 * d, 10.0), "",
                             t.flute_length_mm.has_value()});

@@ -170,7 +170,7 @@ TEST(Compress, SaysWhatKeptRunsApart) {
 
 TEST(Compress, NamesTheLineOfTheLargestKink) {
   // A straight line, then a coarse circle that leaves it with a kink.
-  std::string text = kHead + "X20. Y0.\n";
+  std::string text = kHead + "Z-1.\nX20. Y0.\n";
   for (int i = 1; i <= 40; ++i)
     text += fmt::format("X{:.3f} Y{:.3f}\n", 20 + 10 * std::sin(i * 0.03 + 0.2) - 10 * std::sin(0.2),
                         10 * std::cos(0.2) - 10 * std::cos(i * 0.03 + 0.2));
