@@ -107,7 +107,7 @@ class Writer {
     part.line_first = lines_ + 1;
     const char word = static_cast<char>(letter - 'a' + 'A');
     for (int i = 0; i < 2; ++i) {
-      line(fmt::format("G1 {}{:g} F{:g}", word, to_deg, feed_deg_per_min));
+      line(fmt::format("G1 {}{:.4f} F{:g}", word, to_deg, feed_deg_per_min));
       line(fmt::format("G1 {}0", word));
     }
     part.line_last = lines_;
@@ -116,7 +116,7 @@ class Writer {
   }
 
   void rapid(int axis, double to_mm) {
-    line(fmt::format("G0 {}{:g}", "XYZ"[axis], to_mm));
+    line(fmt::format("G0 {}{:.4f}", "XYZ"[axis], to_mm));
     rest();
     line("G0 X0 Y0 Z0");
     rest();

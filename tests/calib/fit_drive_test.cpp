@@ -88,7 +88,7 @@ TEST(FitDrive, FindsFeedForwardWithoutLag) {
   expect(d.feed_forward_percent, 80, 0.02);
 }
 
-TEST(FitDrive, DISABLED_FindsDeadTime) {
+TEST(FitDrive, FindsDeadTime) {
   const DriveFit d = fit(followed({.gain = 40, .lag_s = 0.002, .dead_time_s = 0.004}));
   expect(d.gain_per_s, 40, 0.03);
   EXPECT_NEAR(d.dead_time_s.value + d.velocity_lag_s.value, 0.006, 0.0006);
@@ -101,14 +101,14 @@ TEST(FitDrive, DISABLED_FindsAccelerationFeedForward) {
   expect(d.acceleration_feed_forward_s, 0.003, 0.1);
 }
 
-TEST(FitDrive, DISABLED_FindsBacklashOfTheLoad) {
+TEST(FitDrive, FindsBacklashOfTheLoad) {
   const DriveFit d = fit(followed({.gain = 33, .lag_s = 0.003, .backlash = 0.012}));
   expect(d.gain_per_s, 33, 0.03);
   expect(d.backlash, 0.012, 0.1);
 }
 
 /// A log of every fourth sample, with the noise of an encoder.
-TEST(FitDrive, DISABLED_TakesCoarseAndNoisyLogs) {
+TEST(FitDrive, TakesCoarseAndNoisyLogs) {
   const DriveFit d =
       fit(followed({.gain = 31, .lag_s = 0.0035, .feed_forward = 0.5}, /*noise_mm=*/0.0005, /*every=*/4));
   EXPECT_NEAR(d.gain_per_s.value, 31, 3);

@@ -52,7 +52,7 @@ TEST(PostCommand, LooksForCollisionsWhereAHeadTurnsAtItsPole) {
                machine + "[[body]]\nname = \"beam\"\non = \"bed\"\nbox_mm = [[15, -60, 20], [35, 60, 30]]\n");
   folder.write("p.nc",
                "G21 G17 G90 G94\nG10 L2 P1 X0. Y0. Z-100.\nG10 L10 P1 R80.\nG54\nT1 M6\nG0\n"
-               "G43.5 H1 X0. Y-20. Z3. I0 J-0.3 K1\nG1 Z0. F1000 I0 J-0.3 K1\nY0. J0. K1\nY20. J0.3 K1\nM30\n");
+               "G43.5 H1 X0. Y-20. Z3. I0 J-0.3 K1.\nG1 Z0. F1000 I0 J-0.3 K1.\nY0. J0. K1.\nY20. J0.3 K1.\nM30\n");
   for (const char* name : {"m", "beam"})
     folder.write(
         std::string(name) + "_job.toml",
