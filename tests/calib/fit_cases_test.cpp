@@ -104,8 +104,7 @@ TEST_F(FitCase, RapidsInWhichAnotherAxisIsAtItsLimit) {
 TEST_F(FitCase, ExactPathAlone) {
   const std::string folder = "cases/fitfeed_crash/";
   const machine::Machine machine = start(folder + "start.toml");
-  const FitFeedResult fit =
-      fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv", 1, 80)}, machine, {});
+  const FitFeedResult fit = fit_feed({run(machine, folder + "program.ngc", folder + "trace.csv", 1, 80)}, machine, {});
   EXPECT_TRUE(fit.converged) << fit.message;
   EXPECT_NEAR(fit.machine.axis[0].acceleration_mm_per_s2, 700, 7);
   EXPECT_NEAR(deg_from_rad(fit.machine.rotary[2].acceleration_rad_per_s2), 600, 6);

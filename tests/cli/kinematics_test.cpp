@@ -285,7 +285,7 @@ TEST(FeedFiveAxes, ReadsTiltedFrames) {
   const double positioning = timed["positioning_s"], cutting = timed["cutting_s"];
   EXPECT_NEAR(positioning + cutting, feed["time_s"], 1e-6);
   EXPECT_NEAR(timed["index_s"], 3 * 2 * 0.4, 1e-9);  // M11 and M13, three times
-  EXPECT_EQ(timed["notes"].size(), 1U);  // tool changes take no time on this machine
+  EXPECT_EQ(timed["notes"].size(), 1U);              // tool changes take no time on this machine
   EXPECT_GT(feed["contour"]["tip_max_um"], 0);
   const std::string page = tests::file_text(folder / "t.html");
   EXPECT_NE(page.find("id=\"machine\""), std::string::npos);

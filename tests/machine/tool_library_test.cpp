@@ -10,8 +10,8 @@
 #include "machine/quantity.h"
 #include "machine/tool_proposal.h"
 #include "test_paths.h"
-#include "tests/support/test_data.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/test_data.h"
 
 namespace camber::machine {
 namespace {
