@@ -17,6 +17,7 @@
 #include "report/cycle_page.h"
 #include "report/planned_picture.h"
 #include "report/timed_track.h"
+#include "simulate/machine_checks.h"
 
 namespace camber::api {
 namespace {
@@ -57,6 +58,7 @@ nc::Interpretation moves_of(const nc::Program& program, const machine::Machine& 
   nc::Interpretation moves = nc::interpret(program, options, diagnostics);
   check_low_feeds(program, moves, diagnostics);
   if (diagnostics.errors() == 0) {
+    simulate::check_machine(machine, program, moves, diagnostics);
     check_rotary_motion(machine, program, moves, false, diagnostics);
     place_rotary_moves(machine, moves);
   }

@@ -70,7 +70,7 @@ TEST(PredictFiveAxes, WritesJointsPosesAndAxialForces) {
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   const std::string forces = tests::file_text(folder / "result/forces.csv");
-  EXPECT_NE(forces.find(",specific_energy_MPa,f_axial_max_N"), std::string::npos);
+  EXPECT_NE(forces.find(",specific_energy_MPa,valid,f_axial_max_N"), std::string::npos);
   const auto feed = columns_of(tests::file_text(folder / "result/feed.csv"));
   const auto &a = feed.at("a_deg"), &c = feed.at("c_deg"), &x = feed.at("axis_x"), &tip = feed.at("tip_z_mm");
   EXPECT_NEAR(a.back(), 20, 1e-3);
@@ -99,22 +99,22 @@ TEST(PredictFiveAxes, SaysWhatIsMissing) {
   EXPECT_EQ(error_of(text),
             "p.nc:7:1: error: where the tool is on the part depends on the work offset, which is not known; G10 L2 in "
             "the program or [compensation] work_offset_mm (of G54) in the job was expected [work-offset]\n"
-            "    A20 C90\n    ^\n");
+            "    A20. C90.\n    ^\n");
   text = rows();
   text.erase(text.find("G10 L1"), text.find("T1 M6") - text.find("G10 L1"));
   EXPECT_EQ(error_of(text),
             "p.nc:8:1: error: where the tool is on the part depends on the length of tool T1, which is not known; its "
             "value (G10 L1) in the program was expected [tool-length]\n"
             "    G0 G43.4 H1 X-6.0261 Y0.5000 Z4.9809\n    ^\n");
-  EXPECT_EQ(error_of(kStart + "G0 X0 Y0 Z150.\nA20 C90\nG43 H1\nG0 X0 Y0 Z50\nG2 X4 Y4 I4 J0 C100 F100\nM30\n"),
+  EXPECT_EQ(error_of(kStart + "G0 X0 Y0 Z150.\nA20. C90.\nG43 H1\nG0 X0 Y0 Z50.\nG2 X4. Y4. I4. J0 C100. F100\nM30\n"),
             "p.nc:11:1: error: this arc is none on the part, as rotary axes turn it; lines, or tool-centre-point "
-            "control, were expected [not-read]\n    G2 X4 Y4 I4 J0 C100 F100\n    ^\n");
+            "control, were expected [not-read]\n    G2 X4. Y4. I4. J0 C100. F100\n    ^\n");
   write_job(folder, rows());
   folder.write("adapt.toml", tests::file_text(folder / "job.toml") +
                                  "[adapt]\nfeed_mm_per_min = [300, 3000]\nlimits = { force_N = 50.0 }\n");
   EXPECT_NE(error_of(rows(), "adapt adapt.toml -o out.nc")
                 .find("p.nc:8:1: error: adapt chooses feeds of X, Y and Z, but rotary axes turn here; a program of X, "
-                      "Y and Z alone was expected [rotary-motion]\n    A20 C90\n    ^\n"),
+                      "Y and Z alone was expected [rotary-motion]\n    A20. C90.\n    ^\n"),
             std::string::npos);
 }
 
@@ -156,7 +156,7 @@ TEST(PredictFiveAxes, TakesTheWorkOffsetOfTheJob) {
   write_job(folder, rows());
   ASSERT_EQ(run_camber(folder, "predict job.toml -o one").status, 0);
   std::string text = rows();
-  text.replace(text.find("G10 L2 P1 X0 Y0 Z-300"), 21, "(IN THE JOB)");
+  text.replace(text.find("G10 L2 P1 X0 Y0 Z-300."), 22, "(IN THE JOB)");
   write_job(folder, text);
   folder.write("job.toml", tests::file_text(folder / "job.toml") + "[compensation]\nwork_offset_mm = [0, 0, -300]\n");
   const auto run = run_camber(folder, "predict job.toml -o two");
@@ -171,7 +171,7 @@ std::string over_the_stock(double clearance) {
   const double tilt = rad_from_deg(70), rim = 30 * std::cos(tilt) - 16 * std::sin(tilt);
   // The rim's lowest point is 30 sin A + 16 cos A towards the spindle; C90 leans the tool along X.
   const double x = 1.5 - 30 * std::sin(tilt) - 16 * std::cos(tilt), z = clearance - rim;
-  return fmt::format("G0 Z100\nG0 A70 C90\nG0 X{0:.4f} Y-20 Z{1:.4f}\nG1 Y20 F3000\nG0 Z100\nM30\n", x, z);
+  return fmt::format("G0 Z100.\nG0 A70. C90.\nG0 X{0:.4f} Y-20. Z{1:.4f}\nG1 Y20. F3000\nG0 Z100.\nM30\n", x, z);
 }
 
 TEST(PredictFiveAxes, NamesTheLineOfACollision) {

@@ -83,13 +83,14 @@ TEST(SeveralTools, EachCutsWithItsOwnShapeAndSignsItsPoints) {
   EXPECT_NEAR(removed_mm3(folder, "r"), 64 + 8, 0.5);
   const std::string csv = tests::file_text(folder / "r/form_error.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool");
+            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid");
   std::istringstream lines(csv);
   std::string line;
   std::getline(lines, line);
   std::size_t of_slot = 0, of_groove = 0;
   while (std::getline(lines, line)) {
-    const std::string maker = line.substr(line.find_last_of(',', line.find_last_of(',') - 1) + 1);
+    const std::string known = line.substr(0, line.find_last_of(','));
+    const std::string maker = known.substr(known.find_last_of(',', known.find_last_of(',') - 1) + 1);
     if (maker == "6,1")
       ++of_slot;
     else if (maker == "12,2")

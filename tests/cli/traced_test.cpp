@@ -96,7 +96,7 @@ TEST(Traced, ADisplacedTraceShowsAsMuchOnTheFloor) {
   std::string row;
   std::getline(rows, row);
   EXPECT_EQ(row,
-            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,"
+            "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid,"
             "model_error_um,difference_um");
   std::size_t level = 0;
   while (std::getline(rows, row)) {
@@ -105,7 +105,7 @@ TEST(Traced, ADisplacedTraceShowsAsMuchOnTheFloor) {
     for (std::string cell; std::getline(of_row, cell, ',');) cells.push_back(cell);
     if (std::stod(cells[5]) < 0.999 || std::stod(cells[0]) < 1 || std::stod(cells[0]) > 5) continue;
     ++level;
-    EXPECT_NEAR(std::stod(cells[14]), kHigh_um, 0.25) << row;
+    EXPECT_NEAR(std::stod(cells[15]), kHigh_um, 0.25) << row;
   }
   EXPECT_GT(level, 20u);
   const std::string page = tests::file_text(folder / "traced/report.html");
