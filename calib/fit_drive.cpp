@@ -135,7 +135,10 @@ void add_slices(const EvenSamples& samples, double slice_s, std::vector<Slice>& 
     moves_from = k;
     std::size_t still = 0;
     while (++k < n && still < rest) still = samples.command[k] == samples.command[k - 1] ? still + 1 : 0;
-    for (std::size_t first = moves_from; first < k; first += length)
+    // Where an axis is on its way that has not been seen to rest, its first samples only bring the model there.
+    if (moves_from < rest) moves_from = 0;
+    const std::size_t judged_from = moves_from < rest ? std::min(warm_up, k) : moves_from;
+    for (std::size_t first = judged_from; first < k; first += length)
       add(first - std::min(warm_up, first - moves_from), first, std::min(first + length, k));
   }
 }

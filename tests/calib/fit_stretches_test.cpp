@@ -118,7 +118,7 @@ TEST(FitStretches, CountsCopiesOnceAndKeepsThemInOneFold) {
 }
 
 /// Tables of logs without rapids have pieces: from the end of one line to the end of another.
-TEST(FitStretches, DISABLED_TakesPiecesOfARunWithMovingEnds) {
+TEST(FitStretches, TakesPiecesOfARunWithMovingEnds) {
   const machine::Machine known = known_machine();
   StretchRun run{"figures", figures(), {}};
   const auto whole = planned(run.program, known);

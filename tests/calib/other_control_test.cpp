@@ -147,8 +147,7 @@ void cut(ServoTrace& t, double from_s, double to_s) {
   set_stretches(t);
 }
 
-/// Disabled: the gain of Z is not found any more.
-TEST(OtherControl, DISABLED_AFeedHoldAnOverrideAndAHoleDoNotSpoilTheFit) {
+TEST(OtherControl, AFeedHoldAnOverrideAndAHoleDoNotSpoilTheFit) {
   const machine::Machine known = known_machine();
   FeedRun run = synthetic_run(known);
   replay(run, known, [](double t) { return t > 3.0 && t < 4.7 ? 0.0 : t > 8.0 && t < 9.5 ? 0.6 : 1.0; });
