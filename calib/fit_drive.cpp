@@ -448,11 +448,11 @@ class DriveSearch {
       : slices_(std::move(slices)), options_(options) {}
 
   Candidate best() {
-    search_models(0);
+    search_models(0, kModels.size());
     consider_backlash();
     bool better = false;  // the last one was the best: the next may be better still
     for (double filter_s = 0.002; filter_s <= 0.13 && (better || best_.held_out_rms > kEnoughMm); filter_s *= 2)
-      better = search_models(filter_s);
+      better = search_models(filter_s, kSimpleModels);
     // Between the values of the list, to a period.
     const double period_s = slices_.front().period_s;
     for (double step_s = best_.model.filter_s / 4; best_.model.filter_s > 0 && step_s > 0.5 * period_s; step_s /= 2) {
@@ -460,23 +460,31 @@ class DriveSearch {
       if (!consider({from.free, from.filter_s + step_s, from.lead_s}, best_))
         consider({from.free, from.filter_s - step_s, from.lead_s}, best_);
     }
+    if (best_.model.filter_s > 0) search_models(best_.model.filter_s, kModels.size(), kSimpleModels);
     consider_backlash();
     add_ambiguity(best_, tried_);
     return best_;
   }
 
  private:
-  /// The models of one filter, each from the one before it: another filter's gain and lag make up for what that filter
-  /// is not. Those with more numbers only while something is left to explain.
-  bool search_models(double filter_s) {
-    //                            gain  lag    ff    acceleration  dead time
-    constexpr Free kModels[] = {{true, false, false, false, false}, {true, true, false, false, false},
-                                {true, false, true, false, false},  {true, true, true, false, false},
-                                {true, true, false, false, true},   {true, true, true, false, true},
-                                {true, true, true, true, false},    {true, true, true, true, true}};
+  //                                              gain  lag    ff    acceleration  dead time
+  static constexpr std::array<Free, 8> kModels{{{true, false, false, false, false},
+                                                {true, true, false, false, false},
+                                                {true, false, true, false, false},
+                                                {true, true, true, false, false},
+                                                {true, true, false, false, true},
+                                                {true, true, true, false, true},
+                                                {true, true, true, true, false},
+                                                {true, true, true, true, true}}};
+  static constexpr std::size_t kSimpleModels = 4;  ///< which tell filters apart
+
+  /// Models `from` to `end` of one filter, each from the one before it: another filter's gain and lag make up for what
+  /// that filter is not. Those with more numbers only while something is left to explain.
+  bool search_models(double filter_s, std::size_t end, std::size_t from = 0) {
     bool better = false;
-    Candidate before;
-    for (const Free& free : kModels) {
+    Candidate before = from > 0 ? best_ : Candidate();
+    for (std::size_t i = from; i < end; ++i) {
+      const Free& free = kModels[i];
       if (best_.held_out_rms < 2 * options_.better_by_mm) break;
       better |= consider({free, filter_s}, before);
       if (free[feed_forward] && !free[acceleration])
