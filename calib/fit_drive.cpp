@@ -112,12 +112,24 @@ EvenSamples even_samples(const ServoTrace& trace, const Stretch& stretch, int ax
   return out;
 }
 
+std::size_t samples_in(double s, double period_s) {
+  return static_cast<std::size_t>(std::max(1L, std::lround(s / period_s)));
+}
+
+/// Number of samples after which a model that began at rest, with the first of `n` commands, is where the axis is. Zero
+/// where the axis is seen to rest before it moves; the axis may be on its way where a trace begins or has a hole.
+template <class Command>
+std::size_t unknown_start(const Command& command, std::size_t n, double period_s) {
+  std::size_t moved = 1;
+  while (moved < n && command(moved) == command(0)) ++moved;
+  return moved < n && moved <= samples_in(kRestS, period_s) ? samples_in(kWarmUpS, period_s) : 0;
+}
+
 void add_slices(const EvenSamples& samples, double slice_s, std::vector<Slice>& out) {
-  const auto count = [&](double s) {
-    return static_cast<std::size_t>(std::max(1L, std::lround(s / samples.period_s)));
-  };
+  const auto count = [&](double s) { return samples_in(s, samples.period_s); };
   const std::size_t rest = count(kRestS), warm_up = count(kWarmUpS), length = count(slice_s),
-                    n = samples.command.size();
+                    n = samples.command.size(),
+                    unknown = unknown_start([&](std::size_t k) { return samples.command[k]; }, n, samples.period_s);
   const auto add = [&](std::size_t from, std::size_t first, std::size_t end) {
     Slice s;
     s.period_s = samples.period_s;
@@ -135,10 +147,7 @@ void add_slices(const EvenSamples& samples, double slice_s, std::vector<Slice>& 
     moves_from = k;
     std::size_t still = 0;
     while (++k < n && still < rest) still = samples.command[k] == samples.command[k - 1] ? still + 1 : 0;
-    // Where an axis is on its way that has not been seen to rest, its first samples only bring the model there.
-    if (moves_from < rest) moves_from = 0;
-    const std::size_t judged_from = moves_from < rest ? std::min(warm_up, k) : moves_from;
-    for (std::size_t first = judged_from; first < k; first += length)
+    for (std::size_t first = std::max(moves_from, unknown); first < k; first += length)
       add(first - std::min(warm_up, first - moves_from), first, std::min(first + length, k));
   }
 }
@@ -448,11 +457,11 @@ class DriveSearch {
       : slices_(std::move(slices)), options_(options) {}
 
   Candidate best() {
-    search_models(0, kModels.size());
+    search_models(0, true, true);
     consider_backlash();
     bool better = false;  // the last one was the best: the next may be better still
     for (double filter_s = 0.002; filter_s <= 0.13 && (better || best_.held_out_rms > kEnoughMm); filter_s *= 2)
-      better = search_models(filter_s, kSimpleModels);
+      better = search_models(filter_s, true, false);
     // Between the values of the list, to a period.
     const double period_s = slices_.front().period_s;
     for (double step_s = best_.model.filter_s / 4; best_.model.filter_s > 0 && step_s > 0.5 * period_s; step_s /= 2) {
@@ -460,36 +469,32 @@ class DriveSearch {
       if (!consider({from.free, from.filter_s + step_s, from.lead_s}, best_))
         consider({from.free, from.filter_s - step_s, from.lead_s}, best_);
     }
-    if (best_.model.filter_s > 0) search_models(best_.model.filter_s, kModels.size(), kSimpleModels);
+    if (best_.model.filter_s > 0) search_models(best_.model.filter_s, false, true);
     consider_backlash();
     add_ambiguity(best_, tried_);
     return best_;
   }
 
  private:
-  //                                              gain  lag    ff    acceleration  dead time
-  static constexpr std::array<Free, 8> kModels{{{true, false, false, false, false},
-                                                {true, true, false, false, false},
-                                                {true, false, true, false, false},
-                                                {true, true, true, false, false},
-                                                {true, true, false, false, true},
-                                                {true, true, true, false, true},
-                                                {true, true, true, true, false},
-                                                {true, true, true, true, true}}};
-  static constexpr std::size_t kSimpleModels = 4;  ///< which tell filters apart
-
-  /// Models `from` to `end` of one filter, each from the one before it: another filter's gain and lag make up for what
-  /// that filter is not. Those with more numbers only while something is left to explain.
-  bool search_models(double filter_s, std::size_t end, std::size_t from = 0) {
+  /// The models of one filter, each from the one before it: another filter's gain and lag make up for what that filter
+  /// is not. Those with more numbers only while something is left to explain. `plain`: without feed forward of the
+  /// acceleration, `accelerated`: with it.
+  bool search_models(double filter_s, bool plain, bool accelerated) {
+    //                            gain  lag    ff    acceleration  dead time
+    constexpr Free kModels[] = {{true, false, false, false, false}, {true, true, false, false, false},
+                                {true, false, true, false, false},  {true, true, true, false, false},
+                                {true, true, false, false, true},   {true, true, true, false, true},
+                                {true, true, true, true, false},    {true, true, true, true, true}};
     bool better = false;
-    Candidate before = from > 0 ? best_ : Candidate();
-    for (std::size_t i = from; i < end; ++i) {
-      const Free& free = kModels[i];
-      if (best_.held_out_rms < 2 * options_.better_by_mm) break;
-      better |= consider({free, filter_s}, before);
-      if (free[feed_forward] && !free[acceleration])
-        better |= consider({free, filter_s, options_.period_s / 2}, before);
+    Candidate before = plain ? Candidate() : best_;
+    const auto look_at = [&](const Model& model) {
+      better |= consider(model, before);
       if (tried_.back().fitted_rms < before.fitted_rms || !std::isfinite(before.held_out_rms)) before = tried_.back();
+    };
+    for (const Free& free : kModels) {
+      if (best_.held_out_rms < 2 * options_.better_by_mm) break;
+      if (free[acceleration] ? accelerated : plain) look_at({free, filter_s});
+      if (accelerated && free[feed_forward] && !free[acceleration]) look_at({free, filter_s, options_.period_s / 2});
     }
     return better;
   }
@@ -542,8 +547,12 @@ double drive_rms_mm(const std::vector<const ServoTrace*>& all, int axis, const m
     for (const Stretch& stretch : trace->stretches) {
       Drive drive(feedmodel::drive_options(model, model.filter_s, trace->period_s),
                   trace->command_mm[stretch.first][axis]);
+      const std::size_t unknown =
+          unknown_start([&](std::size_t k) { return trace->command_mm[stretch.first + k][axis]; },
+                        stretch.end - stretch.first, trace->period_s);
       for (std::size_t k = stretch.first; k < stretch.end; ++k) {
         const double error = drive(trace->command_mm[k][axis]) - trace->actual_mm[k][axis];
+        if (k - stretch.first < unknown) continue;
         sum += error * error;
         ++n;
       }

@@ -43,14 +43,15 @@ struct DriveFitOptions {
 /// squares of this equation in its numbers, which are linear in it (both sides low-passed alike, the dead time from a
 /// list), and from the best model before it. The richer one stands where it lowers the held-out error. Where more than
 /// a micrometre is left, moving averages of 2 to 128 ms before the loop are tried, the best of them to a period. Rests
-/// are left out.
+/// are left out, and the first half second of a stretch of the trace where the axis is not seen to rest before it moves.
 ///
 /// Standard errors: sandwich over the slices; beside it how far the models differ whose held-out error is less than
 /// one and a half times the best and which determine the number, and a twentieth of the sample distance, for what
 /// happens between samples.
 DriveFit fit_drive(const std::vector<const ServoTrace*>& traces, int axis, const DriveFitOptions& options);
 
-/// RMS of predicted minus traced position over the traces, all samples, mm.
+/// RMS of predicted minus traced position over the traces, mm; of all samples but the first half second of a stretch
+/// where the axis is not seen to rest before it moves.
 double drive_rms_mm(const std::vector<const ServoTrace*>& traces, int axis, const machine::Axis& model);
 
 }  // namespace camber::calib

@@ -13,6 +13,7 @@ namespace {
 
 struct TrueDrive {
   double gain = 30, lag_s = 0, feed_forward = 0, acceleration_s = 0, dead_time_s = 0, backlash = 0;
+  std::size_t average = 1;  ///< of so many commands, before the loop
 };
 
 /// Ramps, reversals and rests at several speeds.
@@ -39,9 +40,14 @@ ServoTrace followed(const TrueDrive& d, double noise_mm = 0, int every = 1) {
   constexpr int kSteps = 100;
   constexpr double h = 0.001 / kSteps;
   const auto delay = static_cast<std::size_t>(std::lround(d.dead_time_s / h));
-  std::vector<double> fine;
-  for (std::size_t k = 1; k < command.size(); ++k)
-    for (int i = 0; i < kSteps; ++i) fine.push_back(command[k - 1] + (command[k] - command[k - 1]) * i / kSteps);
+  std::vector<double> passed, fine;
+  double sum = static_cast<double>(d.average) * command.front();
+  for (std::size_t k = 0; k < command.size(); ++k) {
+    sum += command[k] - (k < d.average ? command.front() : command[k - d.average]);
+    passed.push_back(sum / static_cast<double>(d.average));
+  }
+  for (std::size_t k = 1; k < passed.size(); ++k)
+    for (int i = 0; i < kSteps; ++i) fine.push_back(passed[k - 1] + (passed[k] - passed[k - 1]) * i / kSteps);
   ServoTrace t;
   t.has_command = t.has_actual = {true, true, true};
   double x = 0, v = 0, load = 0, last_speed = 0;
@@ -50,7 +56,7 @@ ServoTrace followed(const TrueDrive& d, double noise_mm = 0, int every = 1) {
   for (std::size_t n = 0; n < fine.size(); ++n) {
     if (n % (kSteps * static_cast<std::size_t>(every)) == 0) {
       t.t_s.push_back(static_cast<double>(n) * h);
-      t.command_mm.emplace_back(fine[n], 0, 0);
+      t.command_mm.emplace_back(command[n / kSteps], 0, 0);
       const double seen = load + (noise_mm > 0 ? noise(random) : 0);
       t.actual_mm.emplace_back(std::round(seen * 1e4) / 1e4, 0, 0);
     }
@@ -107,12 +113,41 @@ TEST(FitDrive, FindsBacklashOfTheLoad) {
   expect(d.backlash, 0.012, 0.1);
 }
 
+TEST(FitDrive, FindsDeadTimeBehindAMovingAverage) {
+  const DriveFit d = fit(followed({.gain = 40, .lag_s = 0.002, .dead_time_s = 0.012, .average = 64}));
+  printf("%s: average %.1f, dead time %.2f, lag %.2f ms, gain %.2f, %.2f um\n", d.model.c_str(),
+         1000 * d.filter_s.value, 1000 * d.dead_time_s.value, 1000 * d.velocity_lag_s.value, d.gain_per_s.value,
+         1000 * d.held_out_rms_mm);
+  expect(d.gain_per_s, 40, 0.03);
+  EXPECT_NEAR(d.filter_s.value, 0.064, 0.0011);
+  EXPECT_NEAR(d.dead_time_s.value + d.velocity_lag_s.value, 0.014, 0.0006);
+}
+
 /// A log of every fourth sample, with the noise of an encoder.
 TEST(FitDrive, TakesCoarseAndNoisyLogs) {
   const DriveFit d =
       fit(followed({.gain = 31, .lag_s = 0.0035, .feed_forward = 0.5}, /*noise_mm=*/0.0005, /*every=*/4));
   EXPECT_NEAR(d.gain_per_s.value, 31, 3);
   EXPECT_NEAR(d.feed_forward_percent.value, 50, 5);
+}
+
+/// A trace begins, or goes on behind a hole, at full speed or where the command stands and the axis still follows it.
+TEST(FitDrive, TakesTracesThatBeginOnTheWay) {
+  for (const std::ptrdiff_t lost : {200, 780}) {
+    ServoTrace t = followed({.gain = 30, .lag_s = 0.003});
+    t.t_s.erase(t.t_s.begin(), t.t_s.begin() + lost);
+    t.command_mm.erase(t.command_mm.begin(), t.command_mm.begin() + lost);
+    t.actual_mm.erase(t.actual_mm.begin(), t.actual_mm.begin() + lost);
+    ASSERT_GT((t.command_mm.front() - t.actual_mm.front()).norm(), 0.05) << lost;
+    set_stretches(t);
+    const DriveFit d = fit(t);
+    EXPECT_NEAR(d.gain_per_s.value, 30, 0.1) << lost;
+    EXPECT_NEAR(d.velocity_lag_s.value, 0.003, 0.0003) << lost;
+    EXPECT_LT(d.fitted_rms_mm, 0.001) << lost;
+    machine::Axis axis;
+    axis.position_gain_per_s = d.gain_per_s.value, axis.velocity_lag_s = d.velocity_lag_s.value;
+    EXPECT_LT(drive_rms_mm({&t}, 0, axis), 0.001) << lost;
+  }
 }
 
 TEST(FitDrive, SaysThatAnAxisAtRestTellsNothing) {

@@ -48,7 +48,7 @@ class AddOn(unittest.TestCase):
         self.job.CamberTolerance = 20
         self.job.PostProcessor, self.job.PostProcessorArgs = "linuxcnc", "--no-show-editor"
         for controller in self.job.Tools.Group:
-            controller.CamberOverhang = 25 if controller.ToolNumber == 1 else 40
+            controller.CamberOverhang = 12 if controller.ToolNumber == 1 else 20
             controller.CamberHolder = ""
 
     def files(self, name):
@@ -65,7 +65,7 @@ class AddOn(unittest.TestCase):
         with open(files.toml) as file:
             text = file.read()
         self.assertIn("box_mm = [[-1.000000, -1.000000, -7.000000], [25.000000, 19.000000, 1.000000]]", text)
-        self.assertIn("[tool.1]\nfrom = 1\nflutes = 4\noverhang_mm = 25.000000\nflute_length_mm = 25.000000\n"
+        self.assertIn("[tool.1]\nfrom = 1\nflutes = 4\noverhang_mm = 12.000000\nflute_length_mm = 12.000000\n"
                       "helix_deg = 30\nroot_stiffness_N_per_um = 20.000000\n", text)
         self.assertEqual([span.label for span in files.spans],
                          ["G54", "TC: 6mm Ball End", "Surface", "TC: 5mm Endmill", "Pocket", "Profile"])
@@ -124,7 +124,7 @@ class AddOn(unittest.TestCase):
         plain = command.exportObjectsWith(command.buildPostList(self.job)[0], self.job, False)[1]
         target = os.path.join(self.folder, "posted.nc")
         self.job.PostProcessor = "camber"
-        self.job.PostProcessorArgs = "--post linuxcnc --no-show-editor --overhang 1=25 --keep %s/kept" % self.folder
+        self.job.PostProcessorArgs = "--post linuxcnc --no-show-editor --overhang 1=12 --keep %s/kept" % self.folder
         self.job.PostProcessorOutputFile = target
         failed, text, name = command.exportObjectsWith(command.buildPostList(self.job)[0], self.job)
         self.assertFalse(failed)
@@ -158,7 +158,7 @@ class AddOn(unittest.TestCase):
             post.export(objects, "-", "--do dance", said.append)
 
     def test_post_adapts_feeds(self):
-        self.job.CamberForceLimit = 60
+        self.job.CamberForceLimit = 150
         command = PathPost.CommandPathPost()
         objects = command.buildPostList(self.job)[0]
         plain = command.exportObjectsWith(objects, self.job, False)[1]
@@ -228,7 +228,7 @@ class AddOn(unittest.TestCase):
         opened = FreeCAD.openDocument(path)
         job = compat.jobs_of(opened)[0]
         self.assertEqual(job.CamberMaterial, "C45")
-        self.assertEqual(job.Tools.Group[0].CamberOverhang.Value, 25)
+        self.assertEqual(job.Tools.Group[0].CamberOverhang.Value, 12)
         FreeCAD.closeDocument(opened.Name)
         FreeCAD.setActiveDocument(document.Name)
 

@@ -39,7 +39,7 @@ def check():
     job.CamberMaterial = "C45"
     job.CamberVoxel = 0.4
     for controller in job.Tools.Group:
-        controller.CamberOverhang = 25 if controller.ToolNumber == 1 else 40
+        controller.CamberOverhang = 12 if controller.ToolNumber == 1 else 20
     assert commands.selected_job() is job
     FreeCADGui.runCommand("Camber_Predict")
     shown = FreeCADGui.Control.activeDialog()
