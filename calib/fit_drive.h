@@ -43,7 +43,8 @@ struct DriveFitOptions {
 /// squares of this equation in its numbers, which are linear in it (both sides low-passed alike, the dead time from a
 /// list), and from the best model before it. The richer one stands where it lowers the held-out error. Where more than
 /// a micrometre is left, moving averages of 2 to 128 ms before the loop are tried, the best of them to a period. Rests
-/// are left out, and the first half second of a stretch of the trace where the axis is not seen to rest before it moves.
+/// are left out, and the first half second of a stretch of the trace where the axis is not seen to rest before it
+/// moves.
 ///
 /// Standard errors: sandwich over the slices; beside it how far the models differ whose held-out error is less than
 /// one and a half times the best and which determine the number, and a twentieth of the sample distance, for what
