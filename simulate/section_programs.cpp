@@ -22,7 +22,8 @@ constexpr std::size_t kLongestText = 200'000;
 constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();
 
 void give_up_text(SimulatedProgram& program) {
-  nc::Program none{.source = SourceText(program.text.source.name(), {}), .blocks = {}, .words = {}, .macro = {}};
+  nc::Program none{
+      .source = SourceText(program.text.source.name(), {}), .blocks = {}, .words = {}, .macro = {}, .parts = {}};
   std::swap(program.text, none);  // a string that is assigned a short one keeps its memory
 }
 
