@@ -1,6 +1,7 @@
 # The files of a folder are compiled in groups (CAMBER_UNITY), and headers that nearly every file includes are read once.
 # Files that somebody works on are compiled alone, so that a change costs one file: scripts/build writes their names to
 # alone.txt in the build folder.
+include(${CMAKE_CURRENT_LIST_DIR}/UnityGroups.cmake)
 if(CAMBER_UNITY)
   find_package(Python3 COMPONENTS Interpreter)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py)
@@ -46,21 +47,7 @@ function(camber_compile_together target)
     list(REMOVE_ITEM files ${PROJECT_SOURCE_DIR}/${file})
     set_source_files_properties(${PROJECT_SOURCE_DIR}/${file} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endforeach()
-  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/unity_groups.py 2600
-      ${PROJECT_BINARY_DIR}/unity_groups/${target}.txt ${files}
-    OUTPUT_VARIABLE groups OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-  string(REPLACE ";" "," groups "${groups}")
-  string(REPLACE "\n" ";" groups "${groups}")
-  set(number 0)
-  foreach(group IN LISTS groups)
-    math(EXPR number "${number} + 1")
-    if(group STREQUAL "-")
-      continue()
-    endif()
-    string(REPLACE "," ";" group "${group}")
-    set_source_files_properties(${group} PROPERTIES UNITY_GROUP ${number})
-  endforeach()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  camber_group(${target} 2600 ${files})
   # A group's file is no header, though the compiler takes what it includes for one.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   target_compile_options(${target} PRIVATE -fPIC)  # tests too: precompiled headers ask for the same flags
