@@ -20,6 +20,22 @@ std::string shift_text(const Vec3& s) {
   return out;
 }
 
+constexpr double kOut_mm = 0.1;  // of the stock, that a part may be
+
+/// "+X by 1.00 mm": where a part that would fit into the stock stands out of its sides or its bottom. A stock that is
+/// smaller than the part is a region of it.
+std::string sides_out(const machine::Box& part, const machine::Box& stock) {
+  std::string out;
+  for (int a = 0; a < 3; ++a) {
+    if (part.max_mm[a] - part.min_mm[a] > stock.max_mm[a] - stock.min_mm[a] + kOut_mm) continue;
+    const double below = stock.min_mm[a] - part.min_mm[a], above = a < 2 ? part.max_mm[a] - stock.max_mm[a] : 0;
+    if (std::max(below, above) > kOut_mm)
+      out += fmt::format("{}{}{} by {:.2f} mm", out.empty() ? "" : " and ", below > above ? '-' : '+', "XYZ"[a],
+                         std::max(below, above));
+  }
+  return out;
+}
+
 }  // namespace
 
 void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
@@ -55,9 +71,18 @@ void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
 
 void look_at_part_in_stock(const Evidence& e, Diagnostics& diagnostics) {
   if (e.job.part.mesh.empty() || !e.stock || !e.job.stock.vdb.empty()) return;
-  constexpr double kOut_mm = 0.1, kCells = 300;
+  constexpr double kCells = 300;
   const TriangleMesh mesh = read_mesh(e.job.part.mesh);
   const machine::Box box = simulate::stl_box(e.job.part.mesh);
+  if (const std::string sides = sides_out(box, *e.stock); !sides.empty())
+    diagnostics.add(Diagnostic{
+        Severity::warning,
+        {e.job.part.mesh, 0, 0},
+        fmt::format("the part stands out of the stock towards {}, though it would fit in; a stock that holds the part "
+                    "was expected (the place of either?)",
+                    sides),
+        "part-in-stock",
+        {}});
   const Vec3 size = box.max_mm - box.min_mm;
   const removal::HeightMap part(mesh, std::max({size.x(), size.y(), 1e-3}) / kCells);
   const std::optional<removal::HeightMap> stock = simulate::stock_heights(e.job, part.cell_mm());

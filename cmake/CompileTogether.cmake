@@ -11,9 +11,15 @@ if(CAMBER_UNITY AND Python3_FOUND)
   set(headers <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <limits> <map> <memory> <numbers>
     <numeric> <optional> <set> <span> <sstream> <string> <string_view> <unordered_map> <variant> <vector> <Eigen/Core>
     <Eigen/Geometry> <fmt/format.h>)
-  add_library(camber_headers STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
-  target_link_libraries(camber_headers PRIVATE camber_options TBB::tbb fmt::fmt)
-  target_precompile_headers(camber_headers PRIVATE ${headers} <tbb/parallel_for.h>)
+  # g++ takes the optimization of the headers for the files that include them, whatever these ask for: one set for each.
+  function(camber_headers name)
+    add_library(${name} STATIC ${PROJECT_BINARY_DIR}/headers.cpp)
+    target_link_libraries(${name} PRIVATE camber_options TBB::tbb fmt::fmt)
+    target_compile_options(${name} PRIVATE ${ARGN})
+    target_precompile_headers(${name} PRIVATE ${headers} <tbb/parallel_for.h>)
+  endfunction()
+  camber_headers(camber_headers)
+  camber_headers(camber_light_headers $<$<CONFIG:Release>:-O1>)
   if(CAMBER_TESTS)
     # Precompiled headers ask for the same optimization.
     find_package(GTest REQUIRED)
@@ -28,9 +34,9 @@ endif()
 # Names of theirs stand in headers that others of their folder include.
 set(CAMBER_COMPILED_ALONE report/page_bundle.cpp cli/compress_command.cpp tests/calib/fit_stretches_test.cpp tests/repath/resegment_test.cpp)
 
-# camber_compile_together(TARGET [HEADERS]): files of a group have no local name in common. HEADERS: the target whose
-# precompiled headers it takes; camber_headers without it.
-function(camber_compile_together target)
+# camber_compile_together(TARGET HEADERS): files of a group have no local name in common. HEADERS: the target whose
+# precompiled headers it takes.
+function(camber_compile_together target headers)
   if(NOT CAMBER_UNITY OR NOT Python3_FOUND)
     return()
   endif()
@@ -53,10 +59,12 @@ function(camber_compile_together target)
   target_compile_options(${target} PRIVATE -fPIC)  # tests too: precompiled headers ask for the same flags
   # Those of removal differ: OpenVDB's templates are visible there.
   if(NOT target STREQUAL "camber_removal")
-    if(ARGC GREATER 1)
-      target_precompile_headers(${target} REUSE_FROM ${ARGV1})
-    else()
-      target_precompile_headers(${target} REUSE_FROM camber_headers)
-    endif()
+    target_precompile_headers(${target} REUSE_FROM ${headers})
   endif()
+endfunction()
+
+# The same with less optimization.
+function(camber_compile_lightly target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  camber_compile_together(${target} camber_light_headers)
 endfunction()

@@ -27,6 +27,14 @@
 #include "base/stage.h"
 #include "base/window_buffer.h"
 
+#if OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER == 10  // its library has them: half the time to compile
+extern template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;
+extern template class openvdb::Grid<openvdb::FloatTree>;
+extern template class openvdb::tree::Tree<openvdb::Int32Tree::RootNodeType>;
+extern template class openvdb::Grid<openvdb::Int32Tree>;
+template void openvdb::Int32Tree::attachAccessor(openvdb::tree::ValueAccessorBase<openvdb::Int32Tree, true>&) const;
+#endif
+
 namespace camber::removal {
 
 using openvdb::Coord;
@@ -59,7 +67,7 @@ class RepeatedLeaves {
   std::size_t memory_bytes() const;
 
  private:
-  using Numbers = openvdb::tree::Tree4<openvdb::Int32, 3, 3, 3>::Type;  // nodes smaller than the usual ones: 4 kB
+  using Numbers = openvdb::Int32Tree;  // compiled in OpenVDB's library
 
   static constexpr openvdb::Int32 kLog2Side = static_cast<openvdb::Int32>(Leaf::LOG2DIM);
   static openvdb::Coord place(const openvdb::Coord& at) { return at >> kLog2Side; }
@@ -103,7 +111,6 @@ std::shared_ptr<const RepeatedLeaves> RepeatedLeaves::take_from(openvdb::FloatTr
   auto out = std::make_shared<RepeatedLeaves>();
   std::vector<openvdb::Int32> number(leaves.size(), -1);
   openvdb::tree::ValueAccessor<openvdb::FloatTree> field(tree);
-  openvdb::tree::ValueAccessor<Numbers> numbers(out->numbers_);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (first[i] == kNone || count[first[i]] < 2) continue;
     const openvdb::Coord origin = leaves[i]->origin();
@@ -111,7 +118,7 @@ std::shared_ptr<const RepeatedLeaves> RepeatedLeaves::take_from(openvdb::FloatTr
       number[i] = static_cast<openvdb::Int32>(out->leaves_.size());
       out->leaves_.push_back(std::make_unique<const Leaf>(*leaves[i]));
     }
-    numbers.setValue(place(origin), number[first[i]]);
+    out->numbers_.setValue(place(origin), number[first[i]]);
     field.addTile(1, origin, kHere, false);
   }
   return out;

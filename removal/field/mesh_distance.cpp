@@ -11,6 +11,11 @@
 #include "removal/field/mesh_memory.h"
 #include "removal/part_mesh.h"
 
+#if OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER == 10  // its library has them: half the time to compile
+extern template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;
+extern template class openvdb::Grid<openvdb::FloatTree>;
+#endif
+
 namespace camber::removal {
 
 struct MeshDistance::Impl {

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Slow, ControlLawSeeds, testing::Range(6u, 21u));
 
 /// The control of the KAKEN report: an allowed speed difference of 246 mm/min, a ramp of 64 ms on every axis. The ramp
 /// may stand before or behind the place where the command is traced.
-TEST(ControlLaw, ARampAfterInterpolationIsFound) {
+TEST(ControlLawSlow, ARampAfterInterpolationIsFound) {
   Machine known = tests::synthetic_control(3, CornerLaw::speed_difference);
   known.control.corner.speed_difference_mm_per_s = 4.1;
   for (machine::Axis& axis : known.axis) {

@@ -90,7 +90,7 @@ FeedRun real_run(const std::string& name) {
 
 /// Fitted on all seven (bench/feed/held-out predicts each by a fit on the others). dense_g64 has five parts, of which
 /// one is 3 % off.
-TEST(FitFeedSlow, PredictsTheTracedControl) {
+TEST(FitFeed, PredictsTheTracedControl) {
   Diagnostics diagnostics;
   const machine::Machine fitted =
       machine::read_machine(CAMBER_SOURCE_DIR "/samples/machines/linuxcnc_fitted.toml", diagnostics);
@@ -110,7 +110,7 @@ TEST(FitFeedSlow, PredictsTheTracedControl) {
   }
 }
 
-TEST(FitFeedSlow, FitsTheSamplesTrace) {
+TEST(FitFeed, FitsTheSamplesTrace) {
   const std::string folder = CAMBER_SOURCE_DIR "/samples/01-finishing/";
   Diagnostics diagnostics;
   FeedRun run;

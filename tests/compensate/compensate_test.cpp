@@ -63,7 +63,7 @@ std::string without_coordinates(const std::string& text) {
   return std::regex_replace(text, coordinate, "");
 }
 
-TEST(Compensate, LowersTheFeedWhereNoShiftHelps_slow) {
+TEST(Compensate, LowersTheFeedWhereNoShiftHelps) {
   Diagnostics diagnostics;
   machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/06-wall/job.toml", diagnostics);
   job.compensation.levers = {machine::Lever::shift, machine::Lever::feed};
@@ -91,7 +91,7 @@ TEST(Compensate, LowersTheFeedWhereNoShiftHelps_slow) {
   for (const std::string& line : emitted) EXPECT_TRUE(line.empty() || given.contains(line)) << line;
 }
 
-TEST(Compensate, CutsTwiceWhereNoShiftHelps_slow) {
+TEST(Compensate, CutsTwiceWhereNoShiftHelps) {
   Diagnostics diagnostics;
   machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/06-wall/job.toml", diagnostics);
   job.compensation.levers = {machine::Lever::shift, machine::Lever::passes};
@@ -224,7 +224,7 @@ TEST(Compensate, RefusesTheFeedLeverWhereAVariableSetsTheFeed) {
   }
 }
 
-TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {
+TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   job.machine.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
@@ -265,7 +265,7 @@ TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates_slow) {
   }
 }
 
-TEST(Compensate, MakesNoNewCornersWhereTheControlStopsAtEveryOne_slow) {
+TEST(Compensate, MakesNoNewCornersWhereTheControlStopsAtEveryOne) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   ASSERT_EQ(job.machine.control.corner.law, machine::CornerLaw::exact_stop);
@@ -278,7 +278,7 @@ TEST(Compensate, MakesNoNewCornersWhereTheControlStopsAtEveryOne_slow) {
   EXPECT_EQ(c.stop, Stop::rounds);
 }
 
-TEST(Compensate, GivesTheSameProgramTwice_slow) {
+TEST(Compensate, GivesTheSameProgramTwice) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   job.compensation.max_rounds = 1;
@@ -286,7 +286,7 @@ TEST(Compensate, GivesTheSameProgramTwice_slow) {
   EXPECT_EQ(compensate(job, diagnostics, {}).text, compensate(job, diagnostics, {}).text);
 }
 
-TEST(Compensate, HoldsToTheLargestShift_slow) {
+TEST(Compensate, HoldsToTheLargestShift) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   job.compensation.max_rounds = 1;
@@ -300,7 +300,7 @@ TEST(Compensate, HoldsToTheLargestShift_slow) {
   EXPECT_LE(c.depth_without_bending.deepest_um, 4.0 + 1.0);  // and what a grid of 0.15 mm shows of cusps
 }
 
-TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth_slow) {
+TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   Diagnostics diagnostics;
@@ -320,7 +320,7 @@ TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth_slow) {
   EXPECT_NEAR(std::max(guarded.depth_after.deepest_um, guarded.depth_others.deepest_um), deepest, 1e-9);
 }
 
-TEST(Compensate, TheGuardMakesNoRoundWhereNoShiftCanLiftThePathEnough_slow) {
+TEST(Compensate, TheGuardMakesNoRoundWhereNoShiftCanLiftThePathEnough) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   job.part.program = job.program;
@@ -335,7 +335,7 @@ TEST(Compensate, TheGuardMakesNoRoundWhereNoShiftCanLiftThePathEnough_slow) {
   for (const Round& r : bound.rounds) EXPECT_FALSE(r.guard);
 }
 
-TEST(Compensate, NothingIsEmittedWhereNoRoundIsBetter_slow) {
+TEST(Compensate, NothingIsEmittedWhereNoRoundIsBetter) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   Diagnostics diagnostics;
@@ -351,7 +351,7 @@ TEST(Compensate, NothingIsEmittedWhereNoRoundIsBetter_slow) {
   EXPECT_GT(none.rounds.size(), 1u);
 }
 
-TEST(Compensate, TheFiguresAreOfTheEmittedProgram_slow) {
+TEST(Compensate, TheFiguresAreOfTheEmittedProgram) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   Diagnostics diagnostics;
@@ -371,7 +371,7 @@ TEST(Compensate, TheFiguresAreOfTheEmittedProgram_slow) {
   EXPECT_EQ(c.within_tolerance, c.after_um.p95 <= job.compensation.tolerance_um);
 }
 
-TEST(Compensate, JudgesOnAnotherGridAndMovesTheParameters_slow) {
+TEST(Compensate, JudgesOnAnotherGridAndMovesTheParameters) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
   job.compensation.max_rounds = 1;

@@ -126,7 +126,7 @@ Judged judge(const machine::Job& job, const simulate::SimulatedProgram& program,
   return out;
 }
 
-TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromASlopeOfBallRows_slow) {
+TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromASlopeOfBallRows) {
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("camber-slope-{}", ::getpid());
   std::filesystem::create_directories(folder);
   Diagnostics diagnostics;

@@ -80,7 +80,7 @@ Judged judge(const machine::Job& job, const simulate::SimulatedProgram& program,
   return out;
 }
 
-TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromTheWallOfSample06_slow) {
+TEST(DrawnJudgeSlow, FindsWhatAShiftCanCorrectGoneFromTheWallOfSample06) {
   Diagnostics diagnostics;
   machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/06-wall/job.toml", diagnostics);
   job.simulation.coupling = machine::Coupling::rigid;  // the judge cuts with a tool whose bending does not thin chips

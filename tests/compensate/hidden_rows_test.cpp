@@ -154,7 +154,7 @@ machine::Job lagging_job(const tests::TempFolder& folder) {
   return job;
 }
 
-TEST(HiddenRows, ARasterToAndFroIsCorrectedThoughEverySecondRowIsHidden_slow) {
+TEST(HiddenRows, ARasterToAndFroIsCorrectedThoughEverySecondRowIsHidden) {
   const tests::TempFolder folder;
   Diagnostics diagnostics;
   const CompensationResult c = compensate(lagging_job(folder), diagnostics, {});

@@ -64,7 +64,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return out;
 }
 
-TEST(DrawnJudgeStatic, FindsTheWallOfSample06StraightAfterASlowSecondCut_slow) {
+TEST(DrawnJudgeStaticSlow, FindsTheWallOfSample06StraightAfterASlowSecondCut) {
   Diagnostics diagnostics;
   machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/06-wall/job.toml", diagnostics);
   job.operations.blocks.push_back({8, 16});  // the wall that is milled upwards

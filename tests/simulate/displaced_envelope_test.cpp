@@ -24,7 +24,7 @@ void expect_near(const CutFigures& got, const CutFigures& want) {
   EXPECT_NEAR(got.error_mean_um, want.error_mean_um, kAgreement * want.error_mean_um);
 }
 
-TEST(DisplacedEnvelope, AForceThatRisesWithinAStepLeavesItsMark_slow) {
+TEST(DisplacedEnvelopeSlow, AForceThatRisesWithinAStepLeavesItsMark) {
   // At 60 degrees the edge enters the cut almost along its whole length: a sixth of the peak in a degree. A straight
   // line between the degrees left the least errors 8 % too large.
   InclinedPlane p;
@@ -35,7 +35,7 @@ TEST(DisplacedEnvelope, AForceThatRisesWithinAStepLeavesItsMark_slow) {
   EXPECT_NEAR(got.p5_um, want.p5_um, kAgreement * want.p5_um);
 }
 
-TEST(DisplacedEnvelope, StraightFlutesMarkTheWallAsTheyEnter_slow) {
+TEST(DisplacedEnvelope, StraightFlutesMarkTheWallAsTheyEnter) {
   // All of the edge enters at once, between two rotation steps: drawn over the step the mark was 0.7 um off.
   constexpr double kAgreement_um = 0.15;
   for (const bool up : {true, false}) {
@@ -48,7 +48,7 @@ TEST(DisplacedEnvelope, StraightFlutesMarkTheWallAsTheyEnter_slow) {
   }
 }
 
-TEST(DisplacedEnvelope, InclinedPlaneAgreesWhereverTheGridLies_slow) {
+TEST(DisplacedEnvelopeSlow, InclinedPlaneAgreesWhereverTheGridLies) {
   InclinedPlane p;
   const CutFigures want = drawn_figures(p);
   std::vector<CutFigures> all;
@@ -73,7 +73,7 @@ TEST(DisplacedEnvelope, InclinedPlaneAgreesWhereverTheGridLies_slow) {
   }
 }
 
-TEST(DisplacedEnvelope, FlatterPlaneWithRowsDownwardsAgrees_slow) {
+TEST(DisplacedEnvelopeSlow, FlatterPlaneWithRowsDownwardsAgrees) {
   InclinedPlane p;
   p.slope_deg = 30, p.feed_mm = 0.1, p.upwards = false, p.along_x = 1;
   expect_near(camber_figures(p), drawn_figures(p));
@@ -91,14 +91,14 @@ void expect_wall(const FinishedWall& w, double agreement = kAgreement) {
     EXPECT_NEAR(got.error_um[i], want.error_um[i], agreement * largest) << i;
 }
 
-TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesUpMilling_slow) { expect_wall({.up = true}); }
+TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesUpMilling) { expect_wall({.up = true}); }
 
-TEST(DisplacedEnvelope, SteepHelixAlongAWallAgrees_slow) {
+TEST(DisplacedEnvelope, SteepHelixAlongAWallAgrees) {
   // Errors of 1 to 3 um: what the map of the surface itself loses shows.
   expect_wall({.helix_deg = 45, .up = true});
 }
 
-TEST(DisplacedEnvelope, VerySteepHelixAlongAWallAgrees_slow) {
+TEST(DisplacedEnvelope, VerySteepHelixAlongAWallAgrees) {
   // Rings 0.1 mm wide lag by two degrees each: the peak was 2.5 % too high.
   for (const bool up : {true, false}) {
     const FinishedWall w{.helix_deg = 60, .up = up};
@@ -107,7 +107,7 @@ TEST(DisplacedEnvelope, VerySteepHelixAlongAWallAgrees_slow) {
   }
 }
 
-TEST(DisplacedEnvelope, TeethOfUnequalPitchMarkTheWallAtTheirOwnInstants_slow) {
+TEST(DisplacedEnvelopeSlow, TeethOfUnequalPitchMarkTheWallAtTheirOwnInstants) {
   // At the instants of even teeth the wall was 3.8 um of 16 off.
   for (const bool up : {true, false}) {
     FinishedWall w{.up = up, .drawn_steps = 720};
@@ -116,7 +116,7 @@ TEST(DisplacedEnvelope, TeethOfUnequalPitchMarkTheWallAtTheirOwnInstants_slow) {
   }
 }
 
-TEST(DisplacedEnvelope, RunOutMarksTheWall_slow) {
+TEST(DisplacedEnvelopeSlow, RunOutMarksTheWall) {
   // The tooth that stands out takes more, marks alone, and deeper by its throw, which the helix turns over the height.
   for (const bool up : {true, false}) {
     FinishedWall w{.up = up, .drawn_steps = 720};
@@ -126,12 +126,12 @@ TEST(DisplacedEnvelope, RunOutMarksTheWall_slow) {
   }
 }
 
-TEST(DisplacedEnvelope, HalfImmersionDownMillingAgrees_slow) {
+TEST(DisplacedEnvelope, HalfImmersionDownMillingAgrees) {
   // 77 um of bending at 50 um of feed: far stamps mark the wall, and the cut reaches a radius ahead of it.
   expect_wall({.radial_mm = 5, .up = false}, 0.01);
 }
 
-TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesDownMilling_slow) {
+TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesDownMilling) {
   expect_wall({.up = false, .offset_mm = Vec3(0.037, 0.051, 0.023)});
 }
 

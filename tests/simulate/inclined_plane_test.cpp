@@ -86,7 +86,7 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
   return r;
 }
 
-TEST(InclinedPlane, RigidCouplingMatchesTheIndependentCalculations_slow) {
+TEST(InclinedPlane, RigidCouplingMatchesTheIndependentCalculations) {
   const Result r = simulate(machine::Coupling::rigid, 7, 2.5, 4);
   EXPECT_NEAR(r.lateral_max_N, 62.3, kTolerance * 62.3);
   EXPECT_NEAR(r.force_mean_N.x(), -3.48, kTolerance * 3.48);
@@ -101,7 +101,7 @@ TEST(InclinedPlane, RigidCouplingMatchesTheIndependentCalculations_slow) {
   EXPECT_NEAR(r.removed_fraction, 1, 0.01);
 }
 
-TEST(InclinedPlane, StaticCouplingKeepsTheVolumeBalance_slow) {
+TEST(InclinedPlane, StaticCouplingKeepsTheVolumeBalance) {
   // The bent cutter's chips are as large as what the stock loses: the tilt of the bent envelope is not forgotten.
   const Result r = simulate(machine::Coupling::static_, 3, 1, 2);
   // Two percent: the entry of each row, where the deflection jumps, is not as well balanced as the steady middle.

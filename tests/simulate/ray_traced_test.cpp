@@ -62,7 +62,7 @@ std::vector<Case> cases() {
           {"chamfer", chamfer, testing::drawn_chamfer(0.5, 2.5, rad_from_deg(45), kTop, kEdgeStep)}};
 }
 
-TEST(RayTraced, RandomShortPathsAgree_slow) {
+TEST(RayTracedSlow, RandomShortPathsAgree) {
   std::mt19937 random(20);
   const machine::Material material{2000, 700, 200, 15, 12, 3};
   const testing::DrawnCoefficients drawn{2000, 700, 200, 15, 12, 3};

@@ -46,9 +46,9 @@ DeflectedShoulder soft(bool up) {
 // The peak is that of a single rotation step, a mean that of all.
 constexpr double kPeak = 0.03, kMean = 0.01;
 
-TEST(StaticCut, AnUpMillingToolOnASpringGrowsIntoItsCutAsDrawn_slow) { expect_the_drawn_cut(soft(true), kPeak, kMean); }
+TEST(StaticCut, AnUpMillingToolOnASpringGrowsIntoItsCutAsDrawn) { expect_the_drawn_cut(soft(true), kPeak, kMean); }
 
-TEST(StaticCut, ADownMillingToolOnASpringGrowsIntoItsCutAsDrawn_slow) {
+TEST(StaticCut, ADownMillingToolOnASpringGrowsIntoItsCutAsDrawn) {
   expect_the_drawn_cut(soft(false), kPeak, kMean);
 }
 

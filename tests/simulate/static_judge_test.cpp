@@ -38,7 +38,7 @@ InclinedPlane plane(double young_GPa) {
 
 constexpr double kStiff_GPa = 6e4;  ///< bends a hundredth of what carbide does
 
-TEST(TimeDomainMilling, SlotForcesHaveTheirClosedForm_slow) {
+TEST(TimeDomainMilling, SlotForcesHaveTheirClosedForm) {
   // Mean of one tooth over half a turn: K a f / 4 along and across; of all teeth N times that.
   FinishedWall w;
   w.radial_mm = 12, w.young_MPa = 1000 * kStiff_GPa;
@@ -50,7 +50,7 @@ TEST(TimeDomainMilling, SlotForcesHaveTheirClosedForm_slow) {
   EXPECT_NEAR(f.chips_of_surface, 1, 0.003);
 }
 
-TEST(TimeDomainMilling, AStraightEdgesPeakIsThatOfItsFeed_slow) {
+TEST(TimeDomainMilling, AStraightEdgesPeakIsThatOfItsFeed) {
   FinishedWall w;
   w.radial_mm = 12, w.young_MPa = 1000 * kStiff_GPa, w.helix_deg = 0, w.flutes = 1;
   w.material = {2000, 0, 0, 0, 0, 0};
@@ -59,7 +59,7 @@ TEST(TimeDomainMilling, AStraightEdgesPeakIsThatOfItsFeed_slow) {
   EXPECT_NEAR(f.lateral_max_N, 2000 * w.height_mm * w.feed_mm, 0.005 * 2000 * w.height_mm * w.feed_mm);
 }
 
-TEST(TimeDomainMilling, OfAStiffToolItIsTheRigidCalculationOfAPlane_slow) {
+TEST(TimeDomainMillingSlow, OfAStiffToolItIsTheRigidCalculationOfAPlane) {
   InclinedPlane p = plane(kStiff_GPa);
   JudgeSteps s = coarse();
   s.ramp_mm = 1e-4;
@@ -73,7 +73,7 @@ TEST(TimeDomainMilling, OfAStiffToolItIsTheRigidCalculationOfAPlane_slow) {
   EXPECT_NEAR(f.chips_of_surface, 1, 0.006);
 }
 
-TEST(TimeDomainMilling, OfAStiffToolItIsTheRigidCalculationOfAWall_slow) {
+TEST(TimeDomainMilling, OfAStiffToolItIsTheRigidCalculationOfAWall) {
   FinishedWall w;
   w.up = false, w.radial_mm = 2, w.young_MPa = 1000 * kStiff_GPa;
   const WallFigures want = drawn_figures(w);
@@ -87,7 +87,7 @@ TEST(TimeDomainMilling, OfAStiffToolItIsTheRigidCalculationOfAWall_slow) {
     EXPECT_NEAR(f.error_um[i], want.error_um[i], 0.03 * want.error_um.front()) << i;
 }
 
-TEST(TimeDomainMilling, ChipsAddUpToWhatTheSurfaceLosesAndStepsHardlyMatter_slow) {
+TEST(TimeDomainMillingSlow, ChipsAddUpToWhatTheSurfaceLosesAndStepsHardlyMatter) {
   const InclinedPlane p = plane(210);
   const auto a = judged_figures(p, coarse());
   JudgeSteps finer = coarse();
@@ -113,18 +113,18 @@ void expect_the_judged_plane(const InclinedPlane& p, double of_p5 = 0.025) {
   EXPECT_NEAR(chips_over_surface(p, got), 1, 0.01);
 }
 
-TEST(StaticPlane, CarbideIsAsJudged_slow) { expect_the_judged_plane(plane(600)); }
+TEST(StaticPlane, CarbideIsAsJudged) { expect_the_judged_plane(plane(600)); }
 
-TEST(StaticPlane, HighSpeedSteelIsAsJudged_slow) { expect_the_judged_plane(plane(210)); }
+TEST(StaticPlaneSlow, HighSpeedSteelIsAsJudged) { expect_the_judged_plane(plane(210)); }
 
 /// The surface is left where an edge enters with next to no chip, on what the tooth before left in another bend.
-TEST(StaticPlane, UpMillingRowsOfHighSpeedSteelAreAsJudged_slow) {
+TEST(StaticPlaneSlow, UpMillingRowsOfHighSpeedSteelAreAsJudged) {
   InclinedPlane p = plane(210);
   p.along_x = 1;
   expect_the_judged_plane(p, 0.04);  // the judge's own changes by 3 % with its number of rows
 }
 
-TEST(StaticPlane, RunOutIsAsJudged_slow) {
+TEST(StaticPlaneSlow, RunOutIsAsJudged) {
   InclinedPlane p = plane(300);
   p.pitch_deg = {180, 180}, p.run_out_mm = 0.01, p.run_out_deg = 20;
   expect_the_judged_plane(p);
@@ -144,7 +144,7 @@ void expect_the_judged_wall(FinishedWall w, double within_um = 0.3) {
         << i << (w.up ? " up" : " down");
 }
 
-TEST(StaticWall, ErrorsAreAsJudged_slow) {
+TEST(StaticWallSlow, ErrorsAreAsJudged) {
   for (const bool up : {true, false}) {
     FinishedWall w;
     w.up = up;
@@ -153,13 +153,13 @@ TEST(StaticWall, ErrorsAreAsJudged_slow) {
 }
 
 /// Of four teeth: which of them stands out tells the sense in which the run-out turns.
-TEST(StaticWall, RunOutIsAsJudged_slow) {
+TEST(StaticWall, RunOutIsAsJudged) {
   FinishedWall w;
   w.pitch_deg = {90, 90, 90, 90}, w.run_out_mm = 0.01, w.run_out_deg = 20;
   expect_the_judged_wall(w, 0.4);  // 0.32 at the foot
 }
 
-TEST(StaticWall, WhereAToolIsPulledInTheJudgeFindsNoEquilibriumEither_slow) {
+TEST(StaticWall, WhereAToolIsPulledInTheJudgeFindsNoEquilibriumEither) {
   FinishedWall w;
   w.diameter_mm = 6, w.flutes = 2, w.radial_mm = 12, w.young_MPa = 210000;
   w.material = {1860, -900, 0, 15, 15, 0};
