@@ -20,6 +20,7 @@
 #include "kinematics/pose_track.h"
 #include "machine/assumptions.h"
 #include "machine/job_programs.h"
+#include "nc/language.h"
 #include "nc/program.h"
 #include "report/planned_picture.h"
 #include "report/setup_sheet.h"
@@ -68,7 +69,8 @@ Checked read_and_summarize(const CheckCommand& command, const std::optional<mach
   else if (!command.machine.empty())
     machine = machine::read_machine(command.machine, found);
   Checked checked;
-  checked.text = std::make_unique<nc::Program>(nc::read_program(SourceText::read(command.program), found));
+  checked.text = std::make_unique<nc::Program>(
+      nc::read_program(SourceText::read(command.program), nc::language_asked_for(command.interpreter), found));
   const nc::Program& text = *checked.text;
   if (job)
     checked.assumed = machine::assumptions(*job);
