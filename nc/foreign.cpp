@@ -10,12 +10,12 @@
 namespace camber::nc {
 namespace {
 
-constexpr std::array<std::string_view, 37> kSiemens = {
+constexpr std::array<std::string_view, 37> kSiemensWords = {
     "DEF",    "SUPA",  "CYCLE",  "TRAFOOF", "TRAORI", "COMPOF", "COMPON", "COMPCAD", "COMPCURV", "MSG",
     "MCALL",  "FNORM", "TRANS",  "ATRANS",  "ROT",    "AROT",   "MIRROR", "SCALE",   "FFWON",    "FFWOF",
     "SOFT",   "BRISK", "CR",     "TURN",    "CIP",    "CFTCP",  "DIAMOF", "DIAMON",  "REPEATB",  "WORKPIECE",
     "EXTERN", "PROC",  "STOPRE", "ORIWKS",  "OFFN",   "WCS",    "GROUP"};
-constexpr std::array<std::string_view, 12> kHeidenhain = {"BEGIN", "PGM", "TOOL", "CYCL", "BLK", "FMAX",
+constexpr std::array<std::string_view, 12> kHeidenhainWords = {"BEGIN", "PGM", "TOOL", "CYCL", "BLK", "FMAX",
                                                           "LBL",   "CC",  "RND",  "CHF",  "FN",  "FUNCTION"};
 constexpr std::array<std::string_view, 13> kOWord = {"SUB",    "CALL",      "ENDSUB", "ENDWHILE", "ELSEIF",
                                                      "RETURN", "REPEAT",    "BREAK",  "CONTINUE", "OCALL",
@@ -37,11 +37,11 @@ ForeignWord of_language(std::string_view name, LanguageId id) {
 }  // namespace
 
 ForeignWord explain_letters(std::string_view name) {
-  if (among(kSiemens, name)) return of_language(name, LanguageId::siemens);
+  if (among(kSiemensWords, name)) return of_language(name, LanguageId::siemens);
   if (among(kOWord, name))
     return {fmt::format("{} without its O number; O100 {} or O<name> {} was expected", name, name, name), "statement",
             false};
-  if (among(kHeidenhain, name)) return of_language(name, LanguageId::heidenhain);
+  if (among(kHeidenhainWords, name)) return of_language(name, LanguageId::heidenhain);
   if (name.size() == 2)
     return {fmt::format("{} has no number; a number was expected", name.front()), "no-number", false};
   return {fmt::format("{} is not an NC word; a letter and a number were expected", name), "not-a-word", false};
