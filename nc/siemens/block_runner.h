@@ -151,6 +151,7 @@ class BlockRunner : public SystemValues {
   Vec3 target();
   Vec3 target_in_program();
   Vec3 polar_target(Vec3 start);
+  void keep_last_move();
   double axis_value(const Slot& slot, double start, double unit) const;
   void note_dimensions();
   void prepare_cutting(const char* what, bool arc = false);

@@ -242,13 +242,11 @@ std::uint32_t LineParser::parse_named_value() {
     expect(']', "in an index");
     set_children(node, indexes);
   } else if (peek() == '(') {
-    const FunctionRow* function = find_function(name);
-    if (!function)
-      fail(begin, "function", fmt::format("{} is not a function that Camber knows; SIN, SQRT, ROUND and the like were expected", name));
+    const FunctionRow* function = find_function(name);  // of others the value is not known
     ++at_;
     node.kind = NodeKind::call;
     const auto values = parse_list(')');
-    if (values.size() < function->least || values.size() > function->most)
+    if (function && (values.size() < function->least || values.size() > function->most))
       fail(begin, "function",
            fmt::format("{} with {} values; {} was expected", name, values.size(),
                        function->least == function->most ? fmt::format("{}", function->least)

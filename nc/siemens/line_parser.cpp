@@ -155,6 +155,15 @@ void LineParser::parse_name() {
   skip_blanks();
   const bool sets = peek() == '=' && peek(1) != '=';
   if (item.row && item.row->kind == WordKind::address) return parse_address(item);
+  if (name == "CALL" || name == "EXTCALL") {
+    item.kind = ItemKind::call;
+    item.value = parse_expression();
+    item.length = static_cast<std::uint32_t>(at_ - begin);
+    out_.items.push_back(item);
+    return;
+  }
+  if (name == "PCALL" || name == "ISOCALL")
+    while (!at_end()) ++at_;
   if (item.row && !sets) {
     item.kind = item.row->kind == WordKind::command ? ItemKind::command : ItemKind::call;
     if (peek() == '(') return parse_call(item);
@@ -578,7 +587,10 @@ Declared LineParser::parse_declared(ValueType type, bool parameter) {
   out.offset = static_cast<std::uint32_t>(at_);
   if (!in_name(peek()) || is_digit(peek()))
     fail(at_, "syntax", fmt::format("{} in a declaration; a name was expected", quoted(at_)));
-  out.name = names_.index(read_name());
+  const std::string name_text = read_name();
+  if (name_text.size() == 1)
+    fail(out.offset, "variable", fmt::format("{} is an address; a name of two letters or more was expected", name_text));
+  out.name = names_.index(name_text);
   if (take('[')) {
     do {
       skip_blanks();

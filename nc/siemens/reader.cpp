@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kPowersOfTen[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
+constexpr char kEndOfFile = '\x1a';  ///< of old systems
+
 /// Letters of plain words.
 constexpr bool is_plain(char letter) {
   return std::string_view("NGXYZFABCIJKSTMDHUVWQ").find(letter) != std::string_view::npos;
@@ -78,7 +80,7 @@ class Reader {
         ++at;
         continue;
       }
-      if (c == ';') return true;
+      if (c == ';' || c == kEndOfFile) return true;
       const std::size_t begin = at;
       char letter = upper(c);
       ++at;

@@ -136,7 +136,7 @@ void Sequencer::after_block() {
     runner_.run_cycle(*modal_->cycle, place());
     return;
   }
-  start_subprogram(*modal_->item, 1, true);
+  start_subprogram(modal_->tree->names[modal_->item->name], *modal_->item, 1, true);
 }
 
 // --- flow control
@@ -528,10 +528,6 @@ void Sequencer::run_command_word(const Item& item) {
       return;
     }
     case Does::blend_distance_rapid:
-    case Does::repeat_count:
-      return;
-    case Does::call_text:
-      report_.error(item.offset, "not-supported", fmt::format("{} ({}) is not supported; the name of the subprogram was expected", row.name, row.what), row.name);
       return;
     default:
       return runner_.set_command(row, item.offset);
@@ -568,7 +564,7 @@ CycleCall Sequencer::cycle_call(const Item& item) {
 }
 
 void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) {
-  if (!item.row) return start_subprogram(item, times, false);
+  if (!item.row) return start_subprogram(tree().names[item.name], item, times, false);
   switch (item.row->does) {
     case Does::nothing:
       return;
@@ -579,6 +575,12 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
       const double number = item.count > 0 && tree().arguments[item.first] != kNone ? evaluator_.number(tree().arguments[item.first]) : 0;
       report_.error(item.offset, "alarm", fmt::format("the program reaches SETAL({:.0f}), an alarm of its own, which stops the machine", number));
       return;
+    }
+    case Does::call_text: {
+      std::string name;
+      for (const char c : evaluator_.text(item.value))
+        if (c != ' ' && c != '"') name += c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+      return start_subprogram(name, item, times, false);
     }
     case Does::workpiece:
       return runner_.set_stock(cycle_call(item), called_from());
@@ -604,10 +606,9 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
   runner_.set_command(*item.row, item.offset);
 }
 
-void Sequencer::start_subprogram(const Item& item, std::size_t times, bool of_mcall) {
+void Sequencer::start_subprogram(const std::string& name, const Item& item, std::size_t times, bool of_mcall) {
   if (times == 0) return;
   const Tree& own = of_mcall && modal_ ? *modal_->tree : tree();
-  const std::string& name = own.names[item.name];
   const auto found = files_.find(*frame().file, name);
   if (!found) {
     report_.error(item.offset, "subprogram",

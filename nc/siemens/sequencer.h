@@ -57,7 +57,7 @@ class Sequencer {
   void after_block();
   void finish_block();
   void run_call(const Item& item, std::size_t times, const Statement& s);
-  void start_subprogram(const Item& item, std::size_t times, bool of_mcall);
+  void start_subprogram(const std::string& name, const Item& item, std::size_t times, bool of_mcall);
   CycleCall cycle_call(const Item& item);
   void bind_parameters(Frame& frame, const Statement* procedure, const Item& item);
   void leave_frame();

@@ -21,7 +21,7 @@ bool shows_siemens(std::string_view name, char next) {
   if (!row) return false;
   if (row->kind == WordKind::address) return next == '=';
   if (row->kind == WordKind::cycle) return true;
-  static constexpr std::string_view kNot[] = {"CALL", "ROT", "TRANS", "START", "GET", "WRITE", "DELETE", "SAVE", "INIT", "DRIVE", "SOFT", "HOME", "NORM", "POLY", "RET", "CT"};
+  static constexpr std::string_view kNot[] = {"CALL", "ROT", "TRANS", "START", "GET", "WRITE", "DELETE", "SAVE", "INIT", "DRIVE", "SOFT", "HOME", "NORM", "POLY", "RET", "CT", "CP"};
   if (std::ranges::find(kNot, name) != std::end(kNot)) return false;
   return true;
 }

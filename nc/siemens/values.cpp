@@ -341,6 +341,10 @@ Value Evaluator::call(const Node& n) {
   const std::string& name = tree_->names[n.name];
   if (name.size() >= 4 && name[0] == 'C' && (name == "CTRANS" || name == "CROT" || name == "CSCALE" || name == "CMIRROR" || name == "CRPL"))
     return frame_function(n, name);
+  if (!find_function(name)) {
+    unknown_name_ = name;
+    return {kUnknown, {}, {}};
+  }
   const auto argument = [&](std::uint32_t i) {
     const std::uint32_t at = i < n.count ? tree_->argument(n, i) : kNone;
     if (at == kNone) throw RunError(n.offset, "function", fmt::format("{} lacks a value", name));

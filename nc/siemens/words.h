@@ -42,7 +42,6 @@ enum class Does : std::uint8_t {
   direction_c,    // A3 B3 C3
   spindle_position,  // SPOS SPOSA
   position_axis,  // POS POSA POSP
-  repeat_count,   // P
   // commands
   supa,
   trans,
