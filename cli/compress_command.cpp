@@ -118,6 +118,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   }
   const nc::Program program =
       nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(program, "compress");
   const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
   settle(diagnostics, options);
 

@@ -23,6 +23,7 @@ int run_post(const PostArguments& arguments, const GlobalOptions& options) {
   const machine::Machine machine = job ? job->machine : machine::read_machine(arguments.machine, diagnostics);
   const nc::Program text =
       nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(text, "post");
   const api::PostRequest request{.text = &text,
                                  .output = arguments.output,
                                  .machine = &machine,

@@ -23,6 +23,7 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
   const machine::Job job = machine::read_unprogrammed_job(arguments.job, diagnostics);
   const nc::Program text =
       nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(text, "posture");
   const api::PostureCommand command{.text = &text,
                                     .output = arguments.output,
                                     .job = &job,

@@ -125,6 +125,7 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   const nc::InterpreterOptions interpreter = feedmodel::interpreter_options(machine, arguments.interpreter);
   const nc::Program program =
       nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(program, "resegment");
   const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
   settle(diagnostics, options);
 

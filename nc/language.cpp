@@ -100,6 +100,23 @@ Program read_program(SourceText source, Diagnostics& diagnostics) {
   return read_program(std::move(source), std::nullopt, diagnostics);
 }
 
+void require_iso(const Program& program, std::string_view command) {
+  if (program.language == LanguageId::iso) return;
+  fail_on_file(program.source.name(),
+               fmt::format("{} writes ISO G code, and this program is {} ({}); an ISO program was expected", command,
+                           language_of(program).title, program.language_reason),
+               "not-supported");
+}
+
+void require_iso(const Dialect& dialect, const std::string& machine_file, std::string_view command) {
+  if (dialect.language == LanguageId::iso) return;
+  fail_on_file(machine_file,
+               fmt::format("{} writes ISO G code, and the control of the machine reads {}; a control that reads ISO was "
+                           "expected",
+                           command, language_of(dialect.language).title),
+               "not-supported");
+}
+
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options) {
   return options.dialect ? std::optional(options.dialect->language) : std::nullopt;
 }

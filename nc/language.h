@@ -55,6 +55,11 @@ RecognizedLanguage recognize_language(const SourceText& source);
 /// shows.
 Program read_program(SourceText source, std::optional<LanguageId> language, Diagnostics& diagnostics);
 
+/// Throws InputError [not-supported] for a program in another language than ISO, which `command` does not write.
+void require_iso(const Program& program, std::string_view command);
+/// The same for a control: `machine_file` names it.
+void require_iso(const Dialect& dialect, const std::string& machine_file, std::string_view command);
+
 /// Of the dialect in the options.
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options);
 

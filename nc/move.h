@@ -85,6 +85,9 @@ struct Move {
   /// words have numbers. Only such blocks may be edited. False in loops, in subprograms called more than once or from a
   /// file of their own, for expressions, under G41 and G42 and in polar coordinates.
   bool editable : 1 = true;
+  /// What follows depends on where it ends (an arc tangent to it, a polar coordinate): not editable, but where an edit
+  /// before it has moved its start, its words may be changed so that it still ends there.
+  bool end_fixed : 1 = false;
   bool feed_given : 1 = false;        ///< an F word or a feed mode was read since the previous move, up to this block
   bool feed_by_variable : 1 = false;  ///< the modal feed was set by an expression (F#1)
   /// Only on machines with rotary axes. Bit i: the programmed coordinate X, Y, Z of the end does not follow from the

@@ -74,7 +74,7 @@ void Emitter::run_block(std::size_t first, std::size_t end) {
     return;
   }
   if (move.kind == MoveKind::dwell) return;
-  if (!move.editable) {
+  if (!move.editable && !move.end_fixed) {
     if (!feed_is_right) restore_feed_on_own_line();
     put_lines_before(move.block);
     pass_over(first, end);
@@ -117,7 +117,7 @@ void Emitter::run_block_in_program(const Move& move, const MoveEdit* edit, const
     leave_for_machine_place(writer, move, last_end);
   } else if (move.canned) {
     drill(writer, move, last_end, normal);
-  } else if (move.kind == MoveKind::rapid && !edit) {
+  } else if (move.kind == MoveKind::rapid && !edit && !move.end_fixed) {
     go_rapidly(writer, move);
   } else if (move.kind == MoveKind::arc) {
     go_on_arc(writer, move, edit);

@@ -46,6 +46,7 @@ void Klartext::after_contour_move(std::size_t first) {
   const std::size_t before = corner.move;
   Move &a = out_.moves[before], &b = out_.moves[first];
   a.editable = b.editable = false;
+  fix_end(before);
   if (first != before + 1 || (b.kind != MoveKind::linear && b.kind != MoveKind::arc) || b.canned || b.reference)
     return error(corner.offset, "corner",
                  fmt::format("{} is not followed by a line or an arc of the contour; L, C, CR or CT was expected",
@@ -81,15 +82,15 @@ std::optional<Klartext::Form> Klartext::read_form(const Statement& s, bool& pola
   return std::nullopt;
 }
 
-/// Where a line through `outside` touches the circle: the one before the arc in its sense, or behind it. In the plane
-/// of the tool axis.
-Vec3 Klartext::tangent_point(const Vec3& centre, double radius, double sense, const Vec3& outside, bool before) const {
+/// Where a line from `outside` runs onto the circle in its sense, or a line to there leaves it. In the plane of the tool
+/// axis.
+Vec3 Klartext::tangent_point(const Vec3& centre, double radius, double sense, const Vec3& outside, bool arrives) const {
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   const Vec2 c(centre[axes.first], centre[axes.second]);
   const Vec2 out(outside[axes.first] - c.x(), outside[axes.second] - c.y());
   const double distance = out.norm();
   const double open = std::acos(std::clamp(radius / distance, -1.0, 1.0));
-  const double angle = std::atan2(out.y(), out.x()) + (before ? 1 : -1) * sense * open;
+  const double angle = std::atan2(out.y(), out.x()) + (arrives ? 1 : -1) * sense * open;
   Vec3 point = centre;
   point[axes.first] = c.x() + radius * std::cos(angle);
   point[axes.second] = c.y() + radius * std::sin(angle);
@@ -119,6 +120,7 @@ void Klartext::start_approach(const Statement& s, const BlockValues& b) {
   if (*form == Form::arc && a.angle_rad == 0)
     return error(s.begin, "approach", "APPR CT without the angle of its arc; CCA was expected");
   prepare_cutting("APPR", 7);
+  fix_last_end();
   if (b.compensation) set_compensation(*b.compensation, s.begin);
   a.side = b.compensation && *b.compensation == 2 ? -1 : 1;
   a.move = out_.moves.size();
@@ -144,7 +146,7 @@ void Klartext::finish_approach(std::size_t contour) {
   const auto add = [&](const Vec3& to, std::optional<Arc> arc) {
     Move move = out_.moves[contour];
     move.block = a.block;
-    move.editable = move.feed_given = false;
+    move.editable = move.end_fixed = move.feed_given = false;
     move.start_mm = way.empty() ? frame_.from_program(a.from_mm) : way.back().end_mm;
     move.end_mm = frame_.from_program(to);
     move.feed_mm_per_s = a.feed_mm_per_s;
@@ -179,7 +181,7 @@ void Klartext::finish_approach(std::size_t contour) {
     } else {
       if (relative(a.from_mm).norm() <= radius)
         return error(a.offset, "approach", "APPR LCT from inside its own arc; a smaller radius or a start further away was expected");
-      begin = tangent_point(arc.center_mm, radius, sense, a.from_mm, false);
+      begin = tangent_point(arc.center_mm, radius, sense, a.from_mm, true);
       begin[axes.normal] = a.start_mm[axes.normal];
       sweep = turn_from(relative(begin), relative(a.start_mm), sense);
     }
@@ -205,7 +207,7 @@ void Klartext::depart(const Statement& s, const BlockValues& b) {
   const Vec3 along = last_direction(), from = programmed();
   if (along == Vec3::Zero())
     return error(s.begin, "approach", "DEP without a contour before it");
-  if (!out_.moves.empty()) out_.moves.back().editable = false;
+  fix_last_end();
   editable_ = false;
   Vec3 left = Vec3::Zero();
   const double side = radius_.active ? (radius_.left ? 1 : -1) : last_compensation_ == 2 ? -1 : 1;
@@ -240,7 +242,7 @@ void Klartext::depart(const Statement& s, const BlockValues& b) {
       if (polar) end = polar_target(b);
       if (relative(end).norm() <= size)
         return error(s.begin, "approach", "DEP LCT to a place inside its own arc; a smaller radius was expected");
-      off = tangent_point(arc.center_mm, size, sense, end, true);
+      off = tangent_point(arc.center_mm, size, sense, end, false);
       off[axes.normal] = from[axes.normal];
       sweep = turn_from(relative(from), relative(off), sense);
     }

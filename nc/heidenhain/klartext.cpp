@@ -575,7 +575,7 @@ void Klartext::finish() {
   if (approach_.waits && !report_.has_errors())
     error(approach_.offset, "approach", "APPR is not followed by a block of the contour; L, C or CR was expected");
   for (Move& move : out_.moves)
-    if (runs_[move.block] > 1) move.editable = false;
+    if (runs_[move.block] > 1) move.editable = move.end_fixed = false;
   out_.tool_names = tool_numbers_.names();
 }
 

@@ -172,6 +172,8 @@ class Klartext {
   std::uint32_t state_index();
   Vec3 programmed() const { return frame_.to_program(position_mm_); }
   Vec3 last_direction() const;
+  void fix_last_end();
+  void fix_end(std::size_t behind);
   void add_rotary(const BlockValues& b, std::size_t move);
   void turn_only(const BlockValues& b);
   void direction_target(const Vec3& direction, std::size_t move);
@@ -185,7 +187,7 @@ class Klartext {
   std::optional<Form> read_form(const Statement& s, bool& polar);
   void set_compensation(int code, std::size_t offset);
   void end_compensation();
-  Vec3 tangent_point(const Vec3& centre, double radius, double sense, const Vec3& outside, bool before) const;
+  Vec3 tangent_point(const Vec3& centre, double radius, double sense, const Vec3& outside, bool arrives) const;
 
   // transforms.cpp
   void update_frame();
@@ -294,7 +296,7 @@ class Klartext {
   bool shortest_way_ = false;  ///< M126
 
   Vec3 pole_mm_ = Vec3::Zero();  ///< programmed
-  bool pole_given_ = false;
+  bool pole_given_ = false, pole_from_here_ = false;
   Plane pole_plane_ = Plane::xy;
   int last_sense_ = 0;
 

@@ -117,7 +117,11 @@ BlockValues Klartext::read_values(const Statement& s) {
         if (!b.functions.empty()) b.functions.back().argument = std::isinf(word.value) ? word.value : number();
         break;
       case 'S':
-        set_spindle_speed(number(), word.offset);
+        if (s.kind == Kind::functions) {
+          set_spindle_speed(number(), word.offset);
+        } else {
+          warn(word.offset, "no-effect", "S in a path block is read without effect; the speed is set by TOOL CALL", "S");
+        }
         break;
       default:
         for (std::size_t i = 0; i < 3; ++i) {

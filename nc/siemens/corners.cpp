@@ -63,7 +63,7 @@ void BlockRunner::put_corner(const Corner& corner, std::size_t before, std::size
   const auto leaves = [&](const Move& m) { return std::abs((frame.to_program(m.end_mm) - frame.to_program(m.start_mm))[normal]) > 1e-9; };
   const auto still = [&](const Move& m) { return (m.end_mm - m.start_mm).norm() < 1e-9 && m.arc == Move::kNoArc; };
   if (corner.modal && (!cuts || !same_plane || leaves(a) || leaves(b) || still(a) || still(b))) return;  // RNDM rounds where it can
-  a.editable = b.editable = false;
+  a.editable = b.editable = a.end_fixed = b.end_fixed = false;
   if (!cuts || leaving_ || !std::ranges::all_of(out_.rotary, [&](const RotaryTarget& t) { return t.move < before; }))
     return fail(fmt::format("{} is not followed by a line or an arc of its kind; G1, G2 or G3 in the plane was expected", corner.text));
   if (state_.feed_mode == FeedMode::inverse_time) return fail(fmt::format("{} in inverse time (G93) is not supported", corner.text));

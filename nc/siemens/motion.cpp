@@ -139,6 +139,7 @@ Vec3 BlockRunner::target_in_program() {
 void BlockRunner::keep_last_move() {
   for (std::size_t m = out_.moves.size(); m-- > 0;) {
     if (out_.moves[m].kind == MoveKind::dwell) continue;
+    out_.moves[m].end_fixed |= out_.moves[m].editable;
     out_.moves[m].editable = false;
     return;
   }

@@ -709,7 +709,7 @@ void Sequencer::end_of_part() {
 /// Moves of blocks that have run more than once have no text of their own.
 void Sequencer::mark_repeated_moves() {
   for (Move& move : out_.moves)
-    if (move.block < runs_.size() && runs_[move.block] > 1) move.editable = false;
+    if (move.block < runs_.size() && runs_[move.block] > 1) move.editable = move.end_fixed = false;
 }
 
 void Sequencer::warn_of_blocks_behind_the_end() const {

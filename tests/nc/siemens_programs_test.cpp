@@ -8,6 +8,7 @@
 
 #include "nc/emit.h"
 #include "nc/summary.h"
+#include "test_paths.h"
 #include "tests/nc/nc_text.h"
 #include "tests/support/test_data.h"
 
@@ -133,8 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Lang, SiemensPrograms,
 
 /// The same part in ISO and in this language.
 TEST(SiemensSame, HasTheMovesOfTheIsoProgram) {
-  const std::string folder = tests::unshipped_data("lang");
-  if (folder.empty()) GTEST_SKIP() << tests::not_shipped("lang");
+  const std::string folder = CAMBER_SOURCE_DIR "/tests/data/lang";
   const Read iso = read_text(read_file(folder + "/same/iso.nc"), units(), "iso.nc");
   const Read own = read_text(read_file(folder + "/same/siemens.mpf"), {}, "siemens.mpf");
   EXPECT_EQ(own.messages, std::vector<std::string>{});
