@@ -18,7 +18,7 @@ ToolUse tool_of(const nc::ToolUse& t) {
   return {t.tool, t.line, t.calls, t.cutting_moves, t.cutting_length_mm, t.rapid_length_mm, box_of(t.cutting)};
 }
 
-CheckResult result_of(const std::string& path, const api::CheckedProgram& checked, const Diagnostics& found) {
+CheckResult result_of(const nc::Program& text, const api::CheckedProgram& checked, const Diagnostics& found) {
   const nc::Summary& s = checked.summary;
   CheckResult out{.blocks = s.blocks,
                   .blocks_with_words = s.blocks_with_words,
@@ -35,7 +35,7 @@ CheckResult result_of(const std::string& path, const api::CheckedProgram& checke
   for (const nc::ToolUse& t : s.tools) out.tools.push_back(tool_of(t));
   out.diagnostics = found.all();
   if (checked.memory_bytes) out.memory_GB = *checked.memory_bytes / 1e9;
-  out.json = api::check_json(path, s, found, checked.memory_bytes, checked.feed_meanings);
+  out.json = api::check_json(text, s, found, checked.memory_bytes, checked.feed_meanings);
   return out;
 }
 
@@ -51,7 +51,7 @@ CheckResult checked(const Program& program, const Diagnostics& before, const mac
       Diagnostics ordered;
       for (auto& d : api::in_order(found.all())) ordered.add(std::move(d));
       run.settle(ordered);
-      result = result_of(program.path(), done, ordered);
+      result = result_of(program.impl().text, done, ordered);
       const auto assumed = job       ? machine::assumptions(*job)
                            : machine ? machine::assumptions(*machine)
                                      : std::vector<std::string>{};

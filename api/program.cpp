@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "feedmodel/control_options.h"
 #include "machine/control_kind.h"
+#include "nc/language.h"
 #include "nc/offsets.h"
 
 namespace camber {
@@ -50,7 +51,7 @@ Program program_of(SourceText source, const ReadOptions& options) {
   auto impl = std::make_shared<Program::Impl>();
   impl->path = source.name();
   impl->options = interpreter_options(options, impl->path);
-  impl->text = nc::read_program(std::move(source), impl->found);
+  impl->text = nc::read_program(std::move(source), nc::language_asked_for(impl->options), impl->found);
   return Program(std::move(impl));
 }
 

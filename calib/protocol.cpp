@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
+#include "nc/language.h"
 
 namespace camber::calib {
 namespace {
@@ -37,6 +38,7 @@ class Writer {
  public:
   Writer(const machine::Machine& machine, std::string name, std::string tells)
       : machine_(machine), dialect_(feedmodel::dialect_of(machine.control.kind)) {
+    nc::require_iso(dialect_, machine.path, "protocol");
     program_.name = name + std::string(dialect_.file_extension);
     program_.tells = std::move(tells);
     line("%");

@@ -20,6 +20,7 @@
 #include "kinematics/pose_track.h"
 #include "machine/assumptions.h"
 #include "machine/job_programs.h"
+#include "nc/language.h"
 #include "nc/program.h"
 #include "report/planned_picture.h"
 #include "report/setup_sheet.h"
@@ -68,7 +69,8 @@ Checked read_and_summarize(const CheckCommand& command, const std::optional<mach
   else if (!command.machine.empty())
     machine = machine::read_machine(command.machine, found);
   Checked checked;
-  checked.text = std::make_unique<nc::Program>(nc::read_program(SourceText::read(command.program), found));
+  checked.text = std::make_unique<nc::Program>(
+      nc::read_program(SourceText::read(command.program), nc::language_asked_for(command.interpreter), found));
   const nc::Program& text = *checked.text;
   if (job)
     checked.assumed = machine::assumptions(*job);
@@ -121,11 +123,12 @@ std::string tool_table(const std::vector<nc::ToolUse>& tools) {
 
 }  // namespace
 
-std::string check_report(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
+std::string check_report(const nc::Program& text, const nc::Summary& s, const Diagnostics& diagnostics,
                          std::optional<double> memory_bytes,
                          const std::vector<kinematics::FeedMeaningUse>& feed_meanings) {
-  std::string out = fmt::format("{}: {} blocks, {} of them with words, {}\n", program, s.blocks, s.blocks_with_words,
-                                api::unit_text(s));
+  std::string out = fmt::format("{}: {} blocks, {} of them with words, {}\n", text.source.name(), s.blocks,
+                                s.blocks_with_words, api::unit_text(s));
+  out += fmt::format("language  {} ({})\n", nc::language_of(text).title, text.language_reason);
   out += fmt::format("moves     {} rapid, {} linear, {} arc, {} dwell", s.rapids, s.lines, s.arcs, s.dwells);
   const auto of_them = [&out](std::size_t count, const char* what) {
     if (count > 0) out += fmt::format("\n          {} of them {}", count, what);
@@ -168,9 +171,9 @@ Checked checked_in_order(const CheckCommand& command, const std::optional<machin
   return checked;
 }
 
-std::string json_of(const CheckCommand& command, const Checked& checked, const Diagnostics& ordered) {
+std::string json_of(const Checked& checked, const Diagnostics& ordered) {
   return machine::with_assumptions(
-      api::check_json(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings),
+      api::check_json(*checked.text, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings),
       checked.assumed);
 }
 
@@ -209,11 +212,11 @@ int run_check(const CheckCommand& given, Diagnostics& diagnostics, std::ostream&
     Diagnostics ordered;
     programs.push_back(checked_in_order(command, own, i == 0 ? of_job : Diagnostics(), ordered));
     const Checked& checked = programs.back();
-    results.push_back(json_of(command, checked, ordered));
+    results.push_back(json_of(checked, ordered));
     if (!command.report.empty() && i == 0)
       write_file(command.report, check_page(command, checked.summary, ordered, checked.picture));
     text += (i > 0 ? "\n" : machine::assumptions_text(checked.assumed)) +
-            check_report(command.program, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings);
+            check_report(*checked.text, checked.summary, ordered, checked.memory_bytes, checked.feed_meanings);
     diagnostics.append(ordered);
   }
   if (!command.json.empty())

@@ -33,7 +33,7 @@ int run_check(const CheckCommand& command, Diagnostics& diagnostics, std::ostrea
 int run_explain_kinematics(const CheckCommand& command, Diagnostics& diagnostics, std::ostream& out);
 
 /// The report as it is printed.
-std::string check_report(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics,
+std::string check_report(const nc::Program& text, const nc::Summary& summary, const Diagnostics& diagnostics,
                          std::optional<double> memory_bytes = {},
                          const std::vector<kinematics::FeedMeaningUse>& feed_meanings = {});
 

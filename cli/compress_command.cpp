@@ -13,6 +13,7 @@
 #include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
+#include "nc/language.h"
 #include "nc/summary.h"
 #include "repath/compress.h"
 
@@ -115,7 +116,9 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
     machine = machine::read_machine(arguments.machine, diagnostics);
     interpreter = feedmodel::interpreter_options(*machine, interpreter);
   }
-  const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Program program =
+      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(program, "compress");
   const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
   settle(diagnostics, options);
 

@@ -14,6 +14,7 @@
 #include "feedmodel/timed_path.h"
 #include "machine/assumptions.h"
 #include "machine/machine.h"
+#include "nc/language.h"
 #include "nc/program.h"
 #include "report/timed_track.h"
 
@@ -23,7 +24,8 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
-  const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Program program =
+      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
   const nc::Interpretation moves =
       api::moves_of_feed(program, machine, arguments.interpreter, arguments.output, diagnostics);
   progress.clear();

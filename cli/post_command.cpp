@@ -10,6 +10,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "machine/job.h"
+#include "nc/language.h"
 
 namespace camber::cli {
 
@@ -20,7 +21,9 @@ int run_post(const PostArguments& arguments, const GlobalOptions& options) {
   std::optional<machine::Job> job;
   if (!arguments.job.empty()) job = machine::read_job(arguments.job, diagnostics);
   const machine::Machine machine = job ? job->machine : machine::read_machine(arguments.machine, diagnostics);
-  const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Program text =
+      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(text, "post");
   const api::PostRequest request{.text = &text,
                                  .output = arguments.output,
                                  .machine = &machine,

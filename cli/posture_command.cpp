@@ -12,6 +12,7 @@
 #include "cli/posture_page.h"
 #include "cli/progress.h"
 #include "machine/unprogrammed_job.h"
+#include "nc/language.h"
 
 namespace camber::cli {
 
@@ -20,7 +21,9 @@ int run_posture(const PostureArguments& arguments, const GlobalOptions& options)
   ProgressLine progress(options, "reading");
   const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
   const machine::Job job = machine::read_unprogrammed_job(arguments.job, diagnostics);
-  const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Program text =
+      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(text, "posture");
   const api::PostureCommand command{.text = &text,
                                     .output = arguments.output,
                                     .job = &job,

@@ -11,6 +11,7 @@
 #include "cli/progress.h"
 #include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
+#include "nc/language.h"
 #include "repath/fastest.h"
 
 namespace camber::cli {
@@ -122,7 +123,9 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   Diagnostics diagnostics;
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
   const nc::InterpreterOptions interpreter = feedmodel::interpreter_options(machine, arguments.interpreter);
-  const nc::Program program = nc::read_program(SourceText::read(arguments.program), diagnostics);
+  const nc::Program program =
+      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
+  nc::require_iso(program, "resegment");
   const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
   settle(diagnostics, options);
 

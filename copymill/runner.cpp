@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "feedmodel/control_options.h"
+#include "nc/language.h"
 #include "removal/tile_size.h"
 
 namespace camber::copymill {
@@ -36,7 +37,9 @@ Runner::Runner(const machine::Job& job, const CopyOptions& options, removal::Sto
       motion_(job.machine),
       writer_(feedmodel::dialect_of(job.machine.control.kind), 3),
       piece_options_{.tolerance_mm = options.tolerance_mm},
-      clear_height_(stock, smallest_diameter_mm(job)) {}
+      clear_height_(stock, smallest_diameter_mm(job)) {
+  nc::require_iso(feedmodel::dialect_of(job.machine.control.kind), job.machine.path, "copy");
+}
 
 void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth* depth, double lowest) {
   cut_.emplace(cut);

@@ -17,8 +17,12 @@ struct ContouringCode {
 };
 
 /// In the order of nc::Contouring.
-constexpr std::array<ContouringCode, 5> kContouring{
-    {{"", ""}, {"g08_p1", "G08 P1"}, {"g05_p10000", "G05 P10000"}, {"g05_1_q1", "G05.1 Q1"}, {"cycle832", "CYCLE832"}}};
+constexpr std::array<ContouringCode, 6> kContouring{{{"", ""},
+                                                     {"g08_p1", "G08 P1"},
+                                                     {"g05_p10000", "G05 P10000"},
+                                                     {"g05_1_q1", "G05.1 Q1"},
+                                                     {"cycle832", "CYCLE832"},
+                                                     {"cycle32", "CYCL DEF 32"}}};
 constexpr std::string_view kAnyContouring = "high_speed_contouring";
 
 const ContouringCode& contouring_of(const nc::ModalState& state) {

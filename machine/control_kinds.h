@@ -30,6 +30,8 @@ inline constexpr std::array kControlKinds{
                 .usual_lookahead_blocks = 50,
                 .usual_short_line_periods = 4,
                 .fits_short_lines = true},
+    ControlKind{.name = "heidenhain", .nc_dialect = "heidenhain", .rapid_path = RapidPath::linear},
+    ControlKind{.name = "siemens", .nc_dialect = "siemens", .rapid_path = RapidPath::linear},
 };
 
 }  // namespace camber::machine

@@ -24,8 +24,9 @@ inline constexpr NumberRange kBlockCount{.min = 0, .max = 1e6, .whole = true};
 
 /// Parameter sets of a control, by what selects them; the first that a program's codes select counts.
 /// high_speed_contouring: any of the first three, where it has no set for itself.
-inline constexpr std::array<std::string_view, 10> kModeNames{
-    "g05_1_q1", "g05_p10000", "g08_p1", "cycle832", "high_speed_contouring", "g61", "g61_1", "g62", "g63", "g64"};
+inline constexpr std::array<std::string_view, 11> kModeNames{
+    "g05_1_q1", "g05_p10000", "g08_p1", "cycle832", "cycle32", "high_speed_contouring",
+    "g61",      "g61_1",      "g62",    "g63",      "g64"};
 
 /// Of a parameter set, beside the keys of [control]: its own acceleration law.
 inline constexpr std::array kModeLawKeys{

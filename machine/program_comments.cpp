@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 namespace camber::machine {
 namespace {
@@ -23,9 +24,17 @@ std::size_t end_of_comment(std::string_view text, std::size_t from, char open, c
   return std::min(text.find(close, from), text.size());
 }
 
+/// A structure line of Klartext, "32 * - TOOL: T5", is a comment: offset of its star.
+std::optional<std::size_t> star_of(std::string_view text) {
+  std::size_t at = text.find_first_not_of(" \t");
+  if (at != std::string_view::npos && text[at] != '*') at = text.find_first_not_of("0123456789 \t", at);
+  return at != std::string_view::npos && text[at] == '*' ? std::optional(at) : std::nullopt;
+}
+
 Split split(std::string_view text) {
   text = text.substr(0, kLongest);
   Split out;
+  if (const auto star = star_of(text)) return {{}, std::string(text.substr(*star + 1)), true};
   const std::size_t first = std::min(text.find_first_not_of(" \t"), text.size());
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
@@ -50,7 +59,7 @@ std::string code_of_line(const SourceText& program, std::size_t line) { return s
 std::vector<CommentedLine> commented_lines(const SourceText& program) {
   std::vector<CommentedLine> out;
   for (std::size_t line = 1; line <= program.line_count(); ++line) {
-    if (program.line(line).find_first_of("(;[") == std::string_view::npos) continue;
+    if (program.line(line).find_first_of("(;[*") == std::string_view::npos) continue;
     Split parts = split(program.line(line));
     if (parts.has_comment) out.push_back({line, std::move(parts.code), std::move(parts.comment)});
   }

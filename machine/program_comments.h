@@ -8,7 +8,8 @@
 
 namespace camber::machine {
 
-/// A line of the program that has a comment: (...), from ; to the end of the line, or [...] at the beginning of a line.
+/// A line of the program that has a comment: (...), from ; to the end of the line, [...] at the beginning of a line,
+/// or a structure line of Klartext (* ...).
 struct CommentedLine {
   std::size_t line = 0;  ///< 1-based
   std::string code;      ///< what stands outside of the comments, in upper case

@@ -161,10 +161,51 @@ std::optional<Mention> kiri_moto(const std::string& comment) {
   return out;
 }
 
-/// Comments that begin with a tool's number, or name it: "T3 D=6.", "1 = End Mill {6 mm}", "TOOL - 7 DIA. - .5",
+/// "DM=6 CR=3 TL=85" of hyperMILL, "D=6.00 R=0.00 F=15.00 L=35.00" of NX: diameter, corner radius, and in NX's the length
+/// of the flutes. The number in front of hyperMILL's is that of its library.
+std::optional<Mention> diameter_and_corner(const std::string& comment, bool inch) {
+  static const std::regex kHyperMill(R"(\bDM=([\d.]+)\s+CR=([\d.]+))"),
+      kNx(R"(^\(?D=([\d.]+)\s+R=([\d.]+)(?:\s+F=([\d.]+))?)");
+  std::smatch m;
+  if (!std::regex_search(comment, m, kHyperMill) && !std::regex_search(comment, m, kNx)) return std::nullopt;
+  const auto diameter = parse_number(m[1].str()), corner = parse_number(m[2].str());
+  if (!diameter || !corner || *diameter <= 0) return std::nullopt;
+  const double unit = inch ? kMmPerInch : 1;
+  Mention out;
+  ToolProposal& tool = out.tool;
+  tool.what = comment;
+  tool.diameter_mm = *diameter * unit;
+  constexpr double kSame = 0.02;  // corner radii are rounded
+  if (std::abs(*corner - *diameter / 2) <= kSame) {
+    tool.type = ToolType::ball;
+  } else if (*corner > 0) {
+    tool.type = ToolType::bull;
+    tool.corner_radius_mm = *corner * unit;
+  } else {
+    tool.type = ToolType::flat;
+  }
+  if (m.size() > 3 && m[3].matched)
+    if (const auto flutes = parse_number(m[3].str()); flutes && *flutes > 0) tool.flute_length_mm = *flutes * unit;
+  return out;
+}
+
+/// "T01 TC1: KL+087.000 KR020.000" of Keller's set-up sheets: length and radius.
+std::optional<Mention> length_and_radius(const std::string& comment, bool inch) {
+  static const std::regex kTool(R"(^\s*T0*(\d{1,6})\s+TC\d+:\s*KL[-+]?[\d.]+\s+KR\+?([\d.]+))");
+  std::smatch m;
+  if (!std::regex_search(comment, m, kTool)) return std::nullopt;
+  const auto radius = parse_number(m[2].str());
+  Mention out;
+  out.number = whole_number(m[1].str());
+  out.tool.what = comment;
+  if (radius && *radius > 0) out.tool.diameter_mm = 2 * *radius * (inch ? kMmPerInch : 1);
+  return out;
+}
+
+/// Comments that begin with a tool's number, or name it: "T3 D=6.", "#11 D=12 - FORM MILL", "1 = End Mill {6 mm}", "TOOL - 7 DIA. - .5",
 /// "Tool #6 ...", "No. 1: 3 mm".
 std::optional<Mention> numbered(const std::string& comment, bool inch) {
-  static const std::regex kT(R"(^\s*T\s*0*(\d{1,6})(?![\d.])\s*[:=]?(.*)$)", std::regex::icase),
+  static const std::regex kT(R"(^\s*(?:T\s*|#(?=\d+\s+D=))0*(\d{1,6})(?![\d.])\s*[:=]?(.*)$)", std::regex::icase),
       kList(R"(^\s*(\d{1,3})\s*=\s*(?=[A-Za-z.\d])(.+)$)"),
       kTool(
           R"(\bTOOL\s*(?:NO\.?|NUMBER|NUM\.?)?\s*[-#=:]+\s*#?\s*-?\s*0*(\d{1,6})(?![\d./])(?!\s*(?:MM\b|IN\b|INCH|")))",
@@ -217,6 +258,8 @@ std::optional<Mention> mention_of(const CommentedLine& line, bool inch) {
   std::optional<Mention> out = freecad(line.comment, inch);
   if (!out) out = cutviewer(line.comment, inch);
   if (!out) out = kiri_moto(line.comment);
+  if (!out) out = diameter_and_corner(line.comment, inch);
+  if (!out) out = length_and_radius(line.comment, inch);
   if (!out) out = numbered(line.comment, inch);
   std::smatch m;
   const bool beside = std::regex_search(line.code, m, kBeside);
@@ -234,6 +277,7 @@ class Changes {
   explicit Changes(const SourceText& program) : program_(program) {
     static const std::regex kTool(R"(T\s*0*(\d{1,6})(?![\d.]))"), kChange(R"(M\s*0?6(?!\d))");
     std::optional<int> selected;
+    if (read_tool_calls()) return;
     for (std::size_t line = 1; line <= program.line_count(); ++line) {
       const std::string_view text = program.line(line);
       if (text.find_first_of("TtMm") == std::string_view::npos) continue;
@@ -280,6 +324,30 @@ class Changes {
   }
 
  private:
+  /// TOOL CALL of Klartext, by number or name; names have the first numbers that no tool has. False: there is none.
+  bool read_tool_calls() {
+    static const std::regex kCall(R"re(^\s*/?\s*N?\d*\s*TOOL\s+CALL\s+(?:0*(\d{1,6})(?!\d)|"([^"]*)"))re");
+    std::map<std::size_t, std::string> names;
+    for (std::size_t line = 1; line <= program_.line_count(); ++line) {
+      const std::string_view text = program_.line(line);
+      if (text.find_first_of("Cc") == std::string_view::npos || text.find_first_of("Tt") == std::string_view::npos) continue;
+      const std::string code = code_of_line(program_, line);
+      std::smatch m;
+      if (!std::regex_search(code, m, kCall)) continue;
+      if (!m[1].matched)
+        names[line] = m[2].str();
+      else if (const auto number = whole_number(m[1].str()))
+        numbers_.insert(changes_[line] = *number);
+    }
+    std::map<std::string, int> number_of_name;
+    for (const auto& [line, name] : names) {
+      const auto [at, is_new] = number_of_name.emplace(name, 0);
+      while (is_new && (at->second == 0 || !numbers_.insert(at->second).second)) ++at->second;
+      changes_[line] = at->second;
+    }
+    return !changes_.empty();
+  }
+
   const SourceText& program_;
   std::map<std::size_t, int> changes_;  ///< by line
   std::set<int> numbers_;

@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "nc/language_id.h"
+
 namespace camber::nc {
 
 struct Program;
@@ -18,9 +20,10 @@ struct NumberRange {
 /// Columns of the memory of tool offsets, by their variables (nc/offset_variables.h).
 enum class OffsetColumns : std::uint8_t { none, fanuc, haas, mazak };
 
-/// One dialect of RS-274. Siemens and Heidenhain have languages of their own: read_program refuses them by name (see
-/// foreign.h).
+/// One dialect of a language. Most facts are about those of RS-274; Siemens and Heidenhain have languages of their own
+/// with one dialect each (nc/language.h).
 struct Dialect {
+  LanguageId language = LanguageId::iso;
   std::string_view name;   ///< the word in files, options and messages
   std::string_view title;  ///< as its maker writes it
 

@@ -78,14 +78,34 @@ inline constexpr Dialect kLinuxCnc{.name = "linuxcnc",
                                    .tip_control_off_m = 429,
                                    .max_levels = 10};
 
+/// TNC 530, 640, TNC7 and their like.
+inline constexpr Dialect kHeidenhain{.language = LanguageId::heidenhain,
+                                     .name = "heidenhain",
+                                     .title = "Heidenhain",
+                                     .has_program_number = false,
+                                     .program_end = "M30",
+                                     .file_extension = ".h"};
+
+/// 840D, 828D, Sinumerik One.
+inline constexpr Dialect kSiemens{.language = LanguageId::siemens,
+                                  .name = "siemens",
+                                  .title = "Siemens",
+                                  .has_program_number = false,
+                                  .program_end = "M30",
+                                  .file_extension = ".mpf",
+                                  .semicolon_ends_block = false,
+                                  .dwell_p_is_ms = false};
+
 /// The first row is default_dialect().
-inline constexpr std::array kDialects{kFanuc, kHaas, kMazak, kLinuxCnc};
+inline constexpr std::array kDialects{kFanuc, kHaas, kMazak, kLinuxCnc, kHeidenhain, kSiemens};
 
 /// Words of five axes: a row for each of kDialects. LinuxCNC has no tilted frames.
 inline constexpr std::array<FiveAxisWords, kDialects.size()> kFiveAxisWords{
     {{},
      {.tip_control = "G234", .one_direction = OneDirection::dynamic, .dynamic_offset = true},
      {},
-     {.one_direction = OneDirection::joints, .tilted_frames = false}}};
+     {.one_direction = OneDirection::joints, .tilted_frames = false},
+     {},
+     {}}};
 
 }  // namespace camber::nc

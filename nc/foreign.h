@@ -1,7 +1,5 @@
 #pragma once
 // Words of letters that are no NC words: macro statements, subprograms and the languages of other controls.
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,13 +16,5 @@ ForeignWord explain_letters(std::string_view name);
 
 /// A letter or an address with `=` behind it, e.g. `T="MILL"`, `R1=5`.
 ForeignWord explain_assignment(std::string_view address);
-
-/// A program in another control's language whose lines begin with a block number ("0 BEGIN PGM PART MM"), by its first
-/// lines: the word that shows it. A line without a number is found word by word (explain_letters).
-struct ForeignProgram {
-  std::size_t offset = 0;  ///< of the word
-  ForeignWord word;
-};
-std::optional<ForeignProgram> foreign_program(std::string_view text);
 
 }  // namespace camber::nc

@@ -24,10 +24,12 @@ std::vector<bool> lines_under(const Program& program, const Interpretation& move
   const std::size_t lines = program.blocks.size();
   std::vector<bool> moves_here(lines, false), out(lines, false);
   for (const Move& m : moves.moves) moves_here[m.block] = true;
+  std::vector<bool> changes(lines, false);
+  for (const Event& event : moves.events)
+    if (event.kind == EventKind::tool_change) changes[event.block] = true;
   bool in = false, heading = false;
   for (std::size_t i = 0; i < lines; ++i) {
-    const auto words = program.words_of(i);
-    const bool change = std::ranges::any_of(words, [](const Word& w) { return w.letter == 'M' && w.value == 6; });
+    const bool change = changes[i];
     const std::string comment = comment_of(program.source.line(i + 1)).substr(0, kLongestComment);
     if (change && !heading) in = false;
     if (!comment.empty()) {

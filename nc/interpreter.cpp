@@ -6,6 +6,7 @@
 
 #include "nc/block_interpreter.h"
 #include "nc/durations.h"
+#include "nc/iso_language.h"
 #include "nc/program_files.h"
 #include "nc/sequencer.h"
 
@@ -305,7 +306,7 @@ bool try_absolute_centres(ProgramFiles& files, InterpreterOptions options, Diagn
 
 }  // namespace
 
-Interpretation interpret(const Program& program, const InterpreterOptions& wanted, Diagnostics& diagnostics) {
+Interpretation interpret_iso(const Program& program, const InterpreterOptions& wanted, Diagnostics& diagnostics) {
   InterpreterOptions options = settled(program, wanted);
   Interpretation out;
   ProgramFiles files(program, diagnostics);

@@ -2,9 +2,19 @@
 
 #include <algorithm>
 
+#include "nc/emit/text_rules.h"
+#include "nc/language.h"
+
 namespace camber::nc {
 
+KnownPlaces::KnownPlaces(const Program& text, const Interpretation& moves) : text_(text), moves_(moves) {
+  if (text.language != LanguageId::iso) rules_ = language_of(text).text_rules(text);
+}
+
+KnownPlaces::~KnownPlaces() = default;
+
 bool KnownPlaces::goes_to_reference(const Move& move) const {
+  if (text_.language != LanguageId::iso) return rules_->goes_to_machine_place(move.block);
   return std::ranges::any_of(text_.words_of(move.block), [](const Word& word) {
     return word.letter == 'G' && (word.value == 28 || word.value == 30 || word.value == 53);
   });

@@ -1,11 +1,14 @@
 #pragma once
 // Which ends of a move lie at places that the program has said.
 #include <array>
+#include <memory>
 
 #include "nc/move.h"
 #include "nc/program.h"
 
 namespace camber::nc {
+
+class TextRules;
 
 /// Follows the moves of a program in order. Before an axis has been named, and after G28, G30 and G53, which take it to
 /// a place of the machine's own, nobody knows where it is; a tool change may take the axes anywhere.
@@ -15,7 +18,8 @@ class KnownPlaces {
     bool start = false, end = false;
   };
 
-  KnownPlaces(const Program& text, const Interpretation& moves) : text_(text), moves_(moves) {}
+  KnownPlaces(const Program& text, const Interpretation& moves);
+  ~KnownPlaces();
 
   /// Of the next move; neither end of one to or from a reference point.
   Ends next(const Move& move);
@@ -26,6 +30,7 @@ class KnownPlaces {
   void learn_words(const Move& move);
 
   const Program& text_;
+  std::unique_ptr<TextRules> rules_;  ///< of languages other than ISO
   const Interpretation& moves_;
   std::array<bool, 3> known_{};
   int tool_ = -1;

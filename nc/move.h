@@ -3,7 +3,9 @@
 // work offset that was active at the first move (docs/nc-language.md, Frames).
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/geometry.h"
@@ -15,8 +17,9 @@
 namespace camber::nc {
 
 enum class MoveKind : std::uint8_t { rapid, linear, arc, dwell };
-/// Which code has switched on a control's mode for fine paths: G08 P1, G05 P10000, G05.1 Q1, CYCLE832.
-enum class Contouring : std::uint8_t { none, g08_p1, g05_p10000, g05_1_q1, cycle832 };
+/// Which code has switched on a control's mode for fine paths: G08 P1, G05 P10000, G05.1 Q1; CYCLE832 (Siemens), cycle
+/// 32 (Heidenhain), whose tolerance is blend_tolerance_mm.
+enum class Contouring : std::uint8_t { none, g08_p1, g05_p10000, g05_1_q1, cycle832, cycle32 };
 
 enum class PathControl : std::uint8_t { exact_path, exact_stop, blend };  ///< G61, G61.1/G09, G64
 enum class SpindleDirection : std::uint8_t { stopped, clockwise, counter_clockwise };
@@ -24,12 +27,12 @@ enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };
 
 /// Modal state during a move; shared by many moves.
 struct ModalState {
-  int tool = 0;  ///< in the spindle (after M6)
+  int tool = 0;  ///< in the spindle (after M6); of a tool that has a name: Interpretation::tool_names
   double spindle_speed_rpm = 0;
   double programmed_spindle_speed_rpm = 0;  ///< S; more than spindle_speed_rpm where the machine clamps it
   SpindleDirection spindle = SpindleDirection::stopped;
   PathControl path_control = PathControl::blend;
-  double blend_tolerance_mm = -1;  ///< G64 P; negative: G64 without P (the control's own)
+  double blend_tolerance_mm = -1;  ///< of the path: G64 P, cycle 32, CYCLE832; negative: the control's own
   double merge_tolerance_mm = -1;  ///< G64 Q; negative: not given
   FeedMode feed_mode = FeedMode::per_minute;
   bool inch = false;
@@ -82,6 +85,9 @@ struct Move {
   /// words have numbers. Only such blocks may be edited. False in loops, in subprograms called more than once or from a
   /// file of their own, for expressions, under G41 and G42 and in polar coordinates.
   bool editable : 1 = true;
+  /// What follows depends on where it ends (an arc tangent to it, a polar coordinate): not editable, but where an edit
+  /// before it has moved its start, its words may be changed so that it still ends there.
+  bool end_fixed : 1 = false;
   bool feed_given : 1 = false;        ///< an F word or a feed mode was read since the previous move, up to this block
   bool feed_by_variable : 1 = false;  ///< the modal feed was set by an expression (F#1)
   /// Only on machines with rotary axes. Bit i: the programmed coordinate X, Y, Z of the end does not follow from the
@@ -91,6 +97,14 @@ struct Move {
   bool start_open : 1 = false;  ///< the same for the start
 
   static constexpr std::uint32_t kNoArc = std::numeric_limits<std::uint32_t>::max();
+};
+
+/// The blank that the program describes: BLK FORM, WORKPIECE. In the frame of the moves.
+struct ProgramStock {
+  bool cylinder = false;  ///< along Z, as wide as the box
+  Vec3 min_mm = Vec3::Zero();
+  Vec3 max_mm = Vec3::Zero();
+  std::uint32_t block = 0;  ///< that ends its description
 };
 
 struct Interpretation {
@@ -103,6 +117,8 @@ struct Interpretation {
   std::vector<RotaryTarget> rotary;            ///< of the moves that turn rotary axes, in order; all axes start at 0
   /// Origin of the machine's coordinates in the frame of the moves, where the work offset is known.
   std::optional<Vec3> machine_origin_mm{};
+  std::map<int, std::string> tool_names{};  ///< of tools that the program calls by name, by their number in states
+  std::optional<ProgramStock> stock{};
   bool whole_numbers_are_increments = false;  ///< how the program's numbers without a decimal point were read
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }

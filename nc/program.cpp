@@ -9,6 +9,7 @@
 
 #include "base/numbers.h"
 #include "nc/foreign.h"
+#include "nc/iso_language.h"
 #include "nc/modal_codes.h"
 #include "nc/reporter.h"
 
@@ -611,18 +612,11 @@ bool jumps_to_blocks(const MacroTables& macro) {
 
 }  // namespace
 
-Program read_program(SourceText source, Diagnostics& diagnostics) {
-  if (source.text().size() >= std::numeric_limits<std::uint32_t>::max())
-    fail_on_file(source.name(), "the program is larger than 4 GB; at most 4 GB are read", "program-too-large");
+Program read_iso_program(SourceText source, Diagnostics& diagnostics) {
   Program program;
   program.source = std::move(source);
   Reporter report(program.source, diagnostics);
   Reporter behind_end(program.source, diagnostics);  // of text that no control reads
-  if (auto foreign = foreign_program(program.source.text())) {
-    report.error(foreign->offset, foreign->word.check, std::move(foreign->word.message));
-    report.finish();
-    diagnostics.throw_if_errors();
-  }
   const bool whole = Scanner(program, report, behind_end).run();
   for (const MacroError& e : link_statements(program.macro)) {
     report.error(e.offset, e.check, e.what());

@@ -2,12 +2,14 @@
 // An NC program as text: blocks and words with their positions in the file, without interpretation.
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "nc/language_id.h"
 #include "nc/statement.h"
 
 namespace camber::nc {
@@ -46,7 +48,15 @@ struct BlockPart {
   std::uint32_t word_count = 0;
 };
 
+/// What a language other than ISO makes of a text beside its words.
+struct LanguageTree {
+  virtual ~LanguageTree() = default;
+};
+
 struct Program {
+  LanguageId language = LanguageId::iso;
+  std::string language_reason{};               ///< why the text is read in it
+  std::shared_ptr<const LanguageTree> tree{};  ///< of languages other than ISO
   SourceText source;
   std::vector<Block> blocks;  ///< blocks[i] is line i + 1 of the file
   std::vector<Word> words;
@@ -67,9 +77,8 @@ struct Program {
   }
 };
 
-/// Splits a text in blocks and words. Problems go to `diagnostics`; reading resumes at the next block.
-/// Throws InputError after Diagnostics::kMaxErrors errors, and at once when the text is in the language of another
-/// control (Siemens, Heidenhain).
+/// Splits a text in blocks and words, in the language that it shows (nc/language.h). Problems go to `diagnostics`;
+/// reading resumes at the next block. Throws InputError after Diagnostics::kMaxErrors errors.
 Program read_program(SourceText source, Diagnostics& diagnostics);
 
 }  // namespace camber::nc

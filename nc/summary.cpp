@@ -28,19 +28,20 @@ void add_bulge(const Interpretation& program, const Move& move, Extents& box) {
   }
 }
 
-/// Blocks with an M6, ascending.
-std::vector<std::size_t> tool_change_blocks(const Program& text) {
+/// Blocks with a change of the tool, ascending.
+std::vector<std::size_t> tool_change_blocks(const Interpretation& program) {
   std::vector<std::size_t> blocks;
-  for (std::size_t b = 0; b < text.blocks.size(); ++b)
-    for (const Word& w : text.words_of(b))
-      if (w.letter == 'M' && w.value == 6) blocks.push_back(b);
+  for (const Event& event : program.events)
+    if (event.kind == EventKind::tool_change) blocks.push_back(event.block);
+  std::ranges::sort(blocks);
+  blocks.erase(std::ranges::unique(blocks).begin(), blocks.end());
   return blocks;
 }
 
 class Summarizer {
  public:
   Summarizer(const Program& text, const Interpretation& program)
-      : program_(program), changes_(tool_change_blocks(text)) {
+      : program_(program), changes_(tool_change_blocks(program)) {
     s_.blocks = text.blocks.size();
     for (const Block& b : text.blocks) s_.blocks_with_words += b.word_count > 0;
   }

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "nc/emit/text_rules.h"
 #include "nc/five_axis_words.h"
+#include "nc/language.h"
 
 namespace camber::repath {
 namespace {
@@ -382,7 +384,8 @@ void PostWriter::write(const PostMotions& motions, const std::vector<DividedMoti
 }
 
 void PostWriter::put_together(Posted& out) {
-  nc::EmittedText text(program_);
+  const auto rules = nc::language_of(program_).text_rules(program_);
+  nc::EmittedText text(program_, *rules);
   std::map<std::uint32_t, std::size_t> lines_in_front;
   for (const auto& [block, edit] : edits_) {
     const std::string end = text.line_end_of(block);

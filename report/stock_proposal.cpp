@@ -204,15 +204,22 @@ class Proposer {
   }
 
  private:
-  /// The blank that a comment gives.
+  /// The blank that the program or a comment gives.
   std::optional<StockProposal> told_box(const nc::Extents& swept) {
     bool inch = false;
     for (const nc::ModalState& state : moves_.states) inch = inch || state.inch;
-    const auto comment = machine::stock_in_comments(text_.source, inch);
-    if (!comment) return std::nullopt;
     StockProposal out;
-    out.told = fmt::format("{}: ({})", comment->from, comment->what);
-    out.box = comment->box ? *comment->box : placed(*comment, out.placed);
+    if (moves_.stock) {
+      const nc::Block& line = text_.blocks[moves_.stock->block];
+      out.told = fmt::format("{}:{}: {}", text_.source.name(), moves_.stock->block + 1,
+                             text_.source.text().substr(line.offset, line.length));
+      out.box = {moves_.stock->min_mm, moves_.stock->max_mm};
+    } else if (const auto comment = machine::stock_in_comments(text_.source, inch)) {
+      out.told = fmt::format("{}: ({})", comment->from, comment->what);
+      out.box = comment->box ? *comment->box : placed(*comment, out.placed);
+    } else {
+      return std::nullopt;
+    }
     const Vec3 low = out.box.min_mm.cwiseMax(swept.min_mm), high = out.box.max_mm.cwiseMin(swept.max_mm);
     if (((high - low).array() <= 0).any()) return std::nullopt;
     low_ = swept.min_mm - Vec3(kSide_mm, kSide_mm, kBelow_mm);

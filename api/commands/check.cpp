@@ -11,6 +11,7 @@
 #include "kinematics/reference_check.h"
 #include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
+#include "nc/language.h"
 #include "simulate/machine_checks.h"
 #include "simulate/machine_collisions.h"
 #include "simulate/pieces.h"
@@ -152,13 +153,15 @@ CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptio
   return checked;
 }
 
-std::string check_json(const std::string& program, const nc::Summary& s, const Diagnostics& diagnostics,
+std::string check_json(const nc::Program& text, const nc::Summary& s, const Diagnostics& diagnostics,
                        std::optional<double> memory_bytes,
                        const std::vector<kinematics::FeedMeaningUse>& feed_meanings) {
   Json tools = Json::array(), found = Json::array();
   for (const auto& t : s.tools) tools.push_back(tool_json(t));
   for (const auto& d : diagnostics.all()) found.push_back(diagnostic_json(d));
-  Json report = {{"program", program},
+  Json report = {{"program", text.source.name()},
+                 {"language", nc::language_of(text).name},
+                 {"language_shown_by", text.language_reason},
                  {"blocks", s.blocks},
                  {"blocks_with_words", s.blocks_with_words},
                  {"unit", unit_text(s)},

@@ -37,7 +37,7 @@ std::vector<Diagnostic> in_order(std::vector<Diagnostic> list);
 std::string unit_text(const nc::Summary& summary);
 
 /// The figures of a report as JSON text, with a line end.
-std::string check_json(const std::string& program, const nc::Summary& summary, const Diagnostics& diagnostics,
+std::string check_json(const nc::Program& text, const nc::Summary& summary, const Diagnostics& diagnostics,
                        std::optional<double> memory_bytes = {},
                        const std::vector<kinematics::FeedMeaningUse>& feed_meanings = {});
 

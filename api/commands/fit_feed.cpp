@@ -16,6 +16,7 @@
 #include "calib/trace_check.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/joint_map.h"
+#include "nc/language.h"
 
 namespace camber::api {
 namespace {
@@ -75,7 +76,9 @@ nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine&
     }
     return moves;
   };
-  return read(traced.text ? *traced.text : nc::read_program(SourceText::read(traced.program), diagnostics));
+  return read(traced.text ? *traced.text
+                          : nc::read_program(SourceText::read(traced.program),
+                                             nc::language_asked_for(traced.interpreter), diagnostics));
 }
 
 /// A servo trace with its lines, where it names them or the path tells them; a position log, the samples of which are

@@ -14,6 +14,7 @@
 #include "feedmodel/joint_map.h"
 #include "machine/cases.h"
 #include "machine/set_number.h"
+#include "nc/language.h"
 #include "report/cycle_page.h"
 #include "report/planned_picture.h"
 #include "report/timed_track.h"
@@ -69,7 +70,8 @@ nc::Interpretation moves_of(const nc::Program& program, const machine::Machine& 
 nc::Interpretation read_moves(const std::string& path, const machine::Machine& machine, const TimeRequest& request,
                               Diagnostics& diagnostics) {
   if (request.text && path == request.program) return moves_of(*request.text, machine, request, diagnostics);
-  return moves_of(nc::read_program(SourceText::read(path), diagnostics), machine, request, diagnostics);
+  return moves_of(nc::read_program(SourceText::read(path), nc::language_asked_for(request.interpreter), diagnostics),
+                  machine, request, diagnostics);
 }
 
 report::CycleRow row_of(std::string name, std::vector<double> values, const nc::Interpretation& moves,

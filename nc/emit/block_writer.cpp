@@ -7,7 +7,7 @@
 namespace camber::nc {
 namespace {
 
-constexpr std::string_view kOrder = "XYZIJKR";  ///< where added words go
+constexpr std::string_view kOrder = "XYZIJKR";  ///< of words that are added at one place
 
 std::string_view number_text(const Program& program, const Word& word) {
   return std::string_view(program.source.text())
@@ -16,18 +16,14 @@ std::string_view number_text(const Program& program, const Word& word) {
 
 }  // namespace
 
-BlockWriter::BlockWriter(const Program& program, std::size_t block, const NumberStyle& style)
+BlockWriter::BlockWriter(const Program& program, std::uint32_t block, const NumberStyle& style, const TextRules& rules)
     : program_(program),
+      index_(block),
       block_(program.blocks[block]),
       words_(program.words_of(block)),
       style_(style),
+      rules_(rules),
       blanks_(block_uses_blanks()) {}
-
-/// Upper or lower case, as the block's first word.
-char BlockWriter::in_case(char letter) const {
-  const bool lower = !words_.empty() && program_.source.text()[words_.front().offset] >= 'a';
-  return lower ? static_cast<char>(letter - 'A' + 'a') : letter;
-}
 
 bool BlockWriter::block_uses_blanks() const {
   if (words_.size() < 2) return style_.blanks;
@@ -71,41 +67,15 @@ void BlockWriter::set(const NewWord& wanted) {
   changes_.push_back({word->offset + word->value_at, old.size(), text_of(wanted, old), wanted.letter, r});
 }
 
-/// Behind the nearest coordinate that comes before it in the usual order; otherwise before the next one; otherwise
-/// behind the last N or G.
 void BlockWriter::add(const NewWord& wanted) {
-  const char letter = wanted.letter;
   const double r = rounded(wanted.value, wanted.decimals);
-  std::string word = in_case(letter) + text_of(wanted);
-  if (letter == 'F') return add_feed(std::move(word), r);
-  const auto rank = [](char c) { return static_cast<int>(kOrder.find(c)); };
-  const Word *before = nullptr, *after = nullptr, *code = nullptr;
-  for (const Word& w : words_) {
-    if (w.letter == 'N' || w.letter == 'G') code = &w;
-    if (kOrder.find(w.letter) == std::string_view::npos) continue;
-    if (rank(w.letter) < rank(letter) && (!before || rank(w.letter) >= rank(before->letter))) before = &w;
-    if (rank(w.letter) > rank(letter) && (!after || rank(w.letter) < rank(after->letter))) after = &w;
-  }
-  if (!before && !after) before = code;
-  const std::string gap = blanks_ ? " " : "";
-  if (before)
-    changes_.push_back({before->offset + std::size_t{before->length}, 0, gap + word, letter, r});
-  else
-    changes_.push_back({after ? after->offset : words_.front().offset, 0, word + gap, letter, r});
+  const std::string word = rules_.new_word(index_, wanted.letter, text_of(wanted)), gap = blanks_ ? " " : "";
+  const TextRules::Place place = rules_.place_of(index_, wanted.letter);
+  changes_.push_back({place.offset, 0, place.behind ? gap + word : word + gap, wanted.letter, r});
 }
 
-/// Behind the last coordinate of the text; otherwise behind the last N or G.
-void BlockWriter::add_feed(std::string word, double value) {
-  const Word *coordinate = nullptr, *code = nullptr;
-  for (const Word& w : words_) {
-    if (kOrder.find(w.letter) != std::string_view::npos) coordinate = &w;
-    if (w.letter == 'N' || w.letter == 'G') code = &w;
-  }
-  const std::string gap = blanks_ ? " " : "";
-  if (const Word* before = coordinate ? coordinate : code)
-    changes_.push_back({before->offset + std::size_t{before->length}, 0, gap + word, 'F', value});
-  else
-    changes_.push_back({words_.front().offset, 0, word + gap, 'F', value});
+void BlockWriter::replace(std::size_t offset, std::size_t length, std::string text) {
+  changes_.push_back({offset, length, std::move(text), 0, 0});
 }
 
 void BlockWriter::take_out(const Word& word) {
@@ -118,12 +88,13 @@ void BlockWriter::take_out(const Word& word) {
   changes_.push_back({begin, end - begin, {}, word.letter, word.value});
 }
 
-std::string BlockWriter::text() const {
+std::string BlockWriter::text(std::string_view line_end) const {
   std::vector<Change> changes = changes_;
   std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
     return a.at != b.at ? a.at < b.at : kOrder.find(a.letter) < kOrder.find(b.letter);
   });
-  std::string out;
+  std::string out = line_before_;
+  if (!out.empty()) out += line_end;
   std::size_t from = block_.offset;
   for (const Change& c : changes) {
     out.append(program_.source.text(), from, c.at - from);
@@ -141,19 +112,9 @@ std::string BlockWriter::further_block(std::span<const NewWord> wanted, std::spa
     if (same && same->value == w.value)
       words.push_back(program_.source.text().substr(same->offset, same->length));
     else
-      words.push_back(in_case(w.letter) + text_of(w));
+      words.push_back(rules_.new_word(index_, w.letter, text_of(w)));
   }
-  auto behind_codes = words.begin();
-  for (const Word& w : own)
-    if (w.letter == 'G') {
-      behind_codes = words.insert(behind_codes, program_.source.text().substr(w.offset, w.length));
-      ++behind_codes;
-    }
-  for (const Word& w : own)
-    if (w.letter != 'G') words.push_back(program_.source.text().substr(w.offset, w.length));
-  std::string out = block_.skip == 0 ? "" : block_.skip == 1 ? "/" : "/" + std::to_string(block_.skip);
-  for (std::size_t i = 0; i < words.size(); ++i) out += (i > 0 && blanks_ ? " " : "") + words[i];
-  return out;
+  return rules_.further_block(index_, blanks_, words, own);
 }
 
 }  // namespace camber::nc

@@ -6,22 +6,15 @@
 #include <vector>
 
 #include "nc/emit/number_style.h"
+#include "nc/emit/text_rules.h"
 #include "nc/program.h"
 
 namespace camber::nc {
 
-/// A word of a block that is made anew.
-struct NewWord {
-  char letter = 0;
-  double value = 0;
-  int decimals = 0;
-  const NumberStyle* style = nullptr;  ///< none: as the coordinates
-};
-
 /// Collects changes of words and renders the block. Everything that is not changed stays byte for byte.
 class BlockWriter {
  public:
-  BlockWriter(const Program& program, std::size_t block, const NumberStyle& style);
+  BlockWriter(const Program& program, std::uint32_t block, const NumberStyle& style, const TextRules& rules);
 
   /// The block's word with the letter (the last one), or nullptr.
   const Word* find(char letter) const;
@@ -38,11 +31,17 @@ class BlockWriter {
   /// Leaves a word of the block out, with the blank before it.
   void take_out(const Word& word);
 
-  bool changed() const { return !changes_.empty(); }
-  /// The block without its line end.
-  std::string text() const;
-  /// A further block with just these words, in the block's style, and words of this block as they are: G words in
-  /// front, others behind.
+  /// A piece of the block's text becomes another one.
+  void replace(std::size_t offset, std::size_t length, std::string text);
+  /// A line to stand before the block.
+  void put_before(std::string line) { line_before_ = std::move(line); }
+
+  bool changed() const { return !changes_.empty() || !line_before_.empty(); }
+  std::uint32_t block() const { return index_; }
+  const NumberStyle& style() const { return style_; }
+  /// The block without its line end, behind the line before it and `line_end`.
+  std::string text(std::string_view line_end) const;
+  /// A further block with just these words, in the block's style, and words of this block as they are.
   std::string further_block(std::span<const NewWord> words, std::span<const Word> own = {}) const;
   bool uses_blanks() const { return blanks_; }
 
@@ -56,15 +55,16 @@ class BlockWriter {
   };
   std::string text_of(const NewWord& word, std::string_view like = {}) const;
   void add(const NewWord& word);
-  void add_feed(std::string word, double value);
-  char in_case(char letter) const;
   bool block_uses_blanks() const;
 
   const Program& program_;
+  const std::uint32_t index_;
   const Block& block_;
   std::span<const Word> words_;
   const NumberStyle& style_;
+  const TextRules& rules_;
   bool blanks_;
+  std::string line_before_{};
   std::vector<Change> changes_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "nc/emit.h"
+#include "nc/emit/text_rules.h"
 
 namespace camber::nc {
 
@@ -12,7 +13,7 @@ std::string_view usual_line_end(const SourceText& source) {
   return first != std::string::npos && first > 0 && source.text()[first - 1] == '\r' ? "\r\n" : "\n";
 }
 
-EmittedText::EmittedText(const Program& program) : program_(program) {
+EmittedText::EmittedText(const Program& program, const TextRules& rules) : program_(program), rules_(rules) {
   const std::string& text = program.source.text();
   line_end_ = usual_line_end(program.source);
   out_.reserve(text.size() + 64);
@@ -43,7 +44,7 @@ std::string EmittedText::text(const std::string& header) {
   std::stable_sort(replaced_.begin(), replaced_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [block, text] : replaced_) {
     copy_until(program_.blocks[block].offset);
-    out_ += text;
+    out_ += text.find(program_.source.line_end()) == std::string::npos ? text : rules_.numbered(text);
     copied_ = program_.blocks[block].offset + program_.blocks[block].length;
   }
   copy_until(program_.source.text().size());
@@ -58,23 +59,15 @@ void EmittedText::copy_until(std::size_t offset) {
 
 void EmittedText::add_header(const std::string& header) {
   if (header.empty()) return;
-  std::size_t block = program_.leader_blocks;
   const auto& text = program_.source.text();
-  while (block < program_.blocks.size()) {
-    const Block& b = program_.blocks[block];
-    const bool tape = b.length > 0 && text[b.offset] == '%';
-    const auto words = program_.words_of(block);
-    const bool name = words.empty() && b.length > 0 && (text[b.offset] == 'O' || text[b.offset] == 'o');
-    if (!tape && !name && (words.empty() || words.front().letter != 'O')) break;
-    ++block;
-  }
+  const std::size_t block = rules_.header_block();
   const std::size_t at = block < program_.blocks.size() ? program_.blocks[block].offset : text.size();
   copy_until(at);
   if (!out_.empty() && out_.back() != program_.source.line_end()) out_ += line_end_;
   std::size_t from = 0;
   while (from < header.size()) {
     const std::size_t end = std::min(header.find('\n', from), header.size());
-    out_ += "(" + header.substr(from, end - from) + ")" + line_end_;
+    out_ += rules_.comment(std::string_view(header).substr(from, end - from)) + line_end_;
     from = end + 1;
     ++header_lines_;
   }

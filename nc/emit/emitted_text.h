@@ -13,9 +13,11 @@ namespace camber::nc {
 /// What a further line of the text begins behind: "\n", "\r\n" or "\r".
 std::string_view usual_line_end(const SourceText& source);
 
+class TextRules;
+
 class EmittedText {
  public:
-  explicit EmittedText(const Program& program);
+  EmittedText(const Program& program, const TextRules& rules);
 
   /// The block becomes `text` (which may hold several lines). At most once for a block, in any order: subprograms run
   /// out of the order of the text.
@@ -26,7 +28,7 @@ class EmittedText {
   /// "\n", "\r\n" or "\r", as behind the block.
   std::string line_end_of(std::uint32_t block) const;
 
-  /// The whole text, `header` (lines without brackets; empty: none) behind % and the O word.
+  /// The whole text, `header` (lines of comments; empty: none) behind the name of the program.
   std::string text(const std::string& header);
   /// Emission::block_of_line of what text() gave.
   std::vector<std::uint32_t> block_of_lines() const;
@@ -36,6 +38,7 @@ class EmittedText {
   void add_header(const std::string& header);
 
   const Program& program_;
+  const TextRules& rules_;
   std::string line_end_;
   std::string out_;
   std::size_t copied_ = 0;                                       ///< bytes of the source that are in out_ or replaced

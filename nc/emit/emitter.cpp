@@ -6,23 +6,9 @@
 
 #include "base/units.h"
 #include "nc/frames.h"
+#include "nc/language.h"
 
 namespace camber::nc {
-
-bool has_code(std::span<const Word> words, char letter, std::initializer_list<double> codes) {
-  return std::any_of(words.begin(), words.end(), [&](const Word& w) {
-    return w.letter == letter && std::find(codes.begin(), codes.end(), w.value) != codes.end();
-  });
-}
-
-std::vector<Word> words_at_end(std::span<const Word> words) {
-  std::vector<Word> out;
-  for (const Word& w : words)
-    if (has_code({&w, 1}, 'M', {0, 1, 2, 5, 9, 30, 60}) || has_code({&w, 1}, 'G', {9})) out.push_back(w);
-  return out;
-}
-
-bool calls(std::span<const Word> words) { return has_code(words, 'M', {96, 97, 98, 99}); }
 
 bool has_split_feeds(const MoveEdit& edit) {
   return std::any_of(edit.via.begin(), edit.via.end(), [](const ViaPoint& v) { return v.feed_mm_per_s.has_value(); });
@@ -32,22 +18,8 @@ bool asks_for_feed(const MoveEdit& edit) { return edit.feed_mm_per_s || has_spli
 
 namespace {
 
-bool goes_to_machine_place(std::span<const Word> words) { return has_code(words, 'G', {28, 29, 30, 53}); }
-
 bool asks_for_anything(const MoveEdit& edit) {
   return edit.end_mm || edit.center_mm || !edit.via.empty() || edit.feed_mm_per_s;
-}
-
-/// The program reads its modal feed (#4109, #<_feed>), or a macro runs behind every move (G66), which relies on it: no
-/// F word stands early enough to bring it back.
-bool feed_is_read(const Program& program) {
-  constexpr double kModalFeed = 4109;
-  const Expressions& expressions = program.macro.expressions;
-  if (std::find(expressions.names.begin(), expressions.names.end(), "_feed") != expressions.names.end()) return true;
-  if (std::any_of(expressions.ops.begin(), expressions.ops.end(),
-                  [](const ExpressionOp& op) { return op.op == Op::number && op.operand == kModalFeed; }))
-    return true;
-  return program.macro.calls && has_code(program.words, 'G', {66, 66.1});
 }
 
 /// The F word of the block is an expression.
@@ -63,12 +35,13 @@ Emitter::Emitter(const Program& program, const Interpretation& moves, std::span<
       moves_(moves),
       edits_(edits),
       options_(options),
+      rules_(language_of(program).text_rules(program)),
       style_(style_of(program)),
-      text_(program),
+      text_(program, *rules_),
       feeds_(program, moves) {
   assert(std::ranges::is_sorted(edits, {}, &MoveEdit::move));
   assert(edits.empty() || edits.back().move < moves.moves.size());
-  if (std::any_of(edits.begin(), edits.end(), asks_for_feed)) feed_is_read_ = feed_is_read(program);
+  if (std::any_of(edits.begin(), edits.end(), asks_for_feed)) feed_is_read_ = rules_->reads_feed();
 }
 
 Emission Emitter::run() {
@@ -96,12 +69,14 @@ void Emitter::run_block(std::size_t first, std::size_t end) {
   feeds_.begin(move);
   const bool feed_is_right = !feeds_.astray() || !cuts(first, end);
   if (!edit && feed_is_right && (at_ - move.start_mm).cwiseAbs().maxCoeff() < kSamePlaceMm) {
+    put_lines_before(move.block);
     at_ = last_end;
     return;
   }
   if (move.kind == MoveKind::dwell) return;
-  if (!move.editable) {
+  if (!move.editable && !move.end_fixed) {
     if (!feed_is_right) restore_feed_on_own_line();
+    put_lines_before(move.block);
     pass_over(first, end);
     return;
   }
@@ -137,12 +112,12 @@ void Emitter::run_block(std::size_t first, std::size_t end) {
 void Emitter::run_block_in_program(const Move& move, const MoveEdit* edit, const Vec3& last_end, int normal) {
   unit_mm_ = moves_.state_of(move).inch ? kMmPerInch : 1.0;
   min_decimals_ = unit_mm_ == 1.0 ? options_.decimals_mm : options_.decimals_inch;
-  BlockWriter writer(program_, move.block, style_);
-  if (goes_to_machine_place(program_.words_of(move.block))) {
+  BlockWriter writer = writer_of(move.block);
+  if (rules_->goes_to_machine_place(move.block)) {
     leave_for_machine_place(writer, move, last_end);
   } else if (move.canned) {
     drill(writer, move, last_end, normal);
-  } else if (move.kind == MoveKind::rapid && !edit) {
+  } else if (move.kind == MoveKind::rapid && !edit && !move.end_fixed) {
     go_rapidly(writer, move);
   } else if (move.kind == MoveKind::arc) {
     go_on_arc(writer, move, edit);
@@ -170,7 +145,7 @@ std::optional<EmitGap> Emitter::why_not(const MoveEdit& edit, std::size_t moves_
   const Move& move = moves_.moves[edit.move];
   const auto words = program_.words_of(move.block);
   if (move.kind == MoveKind::dwell) return EmitGap::dwell;
-  if (goes_to_machine_place(words)) return EmitGap::machine_place;
+  if (rules_->goes_to_machine_place(move.block)) return EmitGap::machine_place;
   if (move.canned) return EmitGap::canned_cycle;
   if (!move.editable && asks_for_feed(edit) && has_feed_expression(words)) return EmitGap::feed_by_variable;
   if (!move.editable) return EmitGap::not_in_text;
@@ -192,7 +167,7 @@ const MoveEdit* Emitter::without_feeds_that_cannot_be(const MoveEdit& edit) {
 std::optional<EmitGap> Emitter::why_no_feed(const Move& move) const {
   if (move.kind == MoveKind::rapid) return EmitGap::rapid;
   if (move.feed_by_variable || feed_is_read_) return EmitGap::feed_by_variable;
-  if (calls(program_.words_of(move.block))) return EmitGap::subprogram;
+  if (rules_->calls(move.block)) return EmitGap::subprogram;
   return std::nullopt;
 }
 
@@ -204,12 +179,21 @@ void Emitter::pass_over(std::size_t first, std::size_t end) {
   for (int axis = 0; axis < 3; ++axis) {
     bool still = true;
     for (std::size_t m = first; m < end; ++m) still = still && moves_.moves[m].end_mm[axis] == start[axis];
-    if (still || incremental(moves_.moves[first])) at_[axis] += shift[axis];
+    if (still || incremental(moves_.moves[first], word_of(moves_.moves[first], axis))) at_[axis] += shift[axis];
   }
 }
 
+/// What the block relies on beside position and feed, where an edit before it has changed that.
+void Emitter::put_lines_before(std::uint32_t block) {
+  const std::string lines = rules_->lines_before(block);
+  if (lines.empty()) return;
+  BlockWriter writer = writer_of(block);
+  writer.put_before(lines);
+  replace_block(block, writer);
+}
+
 void Emitter::replace_block(std::uint32_t block, const BlockWriter& writer) {
-  if (writer.changed()) text_.replace(block, writer.text());
+  if (writer.changed()) text_.replace(block, writer.text(text_.line_end_of(block)));
 }
 
 // --- feeds ----------------------------------------------------------------------------------------------------------
@@ -226,7 +210,7 @@ const Move& Emitter::cutting_move(std::size_t first, std::size_t end) const {
 /// Behind the last cutting block, which is the one that left the feed astray or one that shares it.
 void Emitter::restore_feed_on_own_line() {
   const NewWord word = feeds_.restored(*last_cut_);
-  const BlockWriter writer(program_, last_cut_->block, style_);
+  const BlockWriter writer = writer_of(last_cut_->block);
   text_.add_line_behind(last_cut_->block, writer.further_block({&word, 1}));
 }
 
@@ -250,13 +234,20 @@ double Emitter::length_mm_of(const Vec3& from, const Vec3& to) const {
 
 double Emitter::step_mm(int decimals) const { return unit_mm_ * std::pow(10.0, -decimals); }
 
-/// The word's value that takes the axis to `wanted`.
-double Emitter::word_for(const Move& move, int axis, double wanted) const {
-  return (incremental(move) ? wanted - at_[axis] : wanted) / unit_mm_;
+const Word* Emitter::word_of(const Move& move, int axis) const {
+  const Word* found = nullptr;
+  for (const Word& w : program_.words_of(move.block))
+    if (w.letter == kAxis[axis]) found = &w;
+  return found;
 }
 
-double Emitter::place_after(const Move& move, int axis, double value) const {
-  return incremental(move) ? at_[axis] + value * unit_mm_ : value * unit_mm_;
+/// The word's value that takes the axis to `wanted`.
+double Emitter::word_for(bool incremental, int axis, double wanted) const {
+  return (incremental ? wanted - at_[axis] : wanted) / unit_mm_;
+}
+
+double Emitter::place_after(bool incremental, int axis, double value) const {
+  return incremental ? at_[axis] + value * unit_mm_ : value * unit_mm_;
 }
 
 /// Sets the words that take the tool as near to `wanted` as the decimals allow; returns where it will be.
@@ -265,12 +256,13 @@ Vec3 Emitter::set_end(BlockWriter& writer, const Move& move, const Vec3& wanted,
   Vec3 after = at_;
   for (int axis = 0; axis < 3; ++axis) {
     const int decimals = writer.decimals(kAxis[axis], min_decimals_) + more_decimals;
-    const bool present = writer.find(kAxis[axis]) != nullptr;
+    const Word* present = writer.find(kAxis[axis]);
+    const bool step = incremental(move, present);
     const bool away = std::abs(wanted[axis] - at_[axis]) > 0.5 * step_mm(decimals) + kSamePlaceMm;
     if (!present && !(away && add_words)) continue;
-    const double value = rounded(word_for(move, axis, wanted[axis]), decimals);
+    const double value = rounded(word_for(step, axis, wanted[axis]), decimals);
     writer.set(kAxis[axis], value, decimals);
-    after[axis] = place_after(move, axis, writer.value(kAxis[axis]));
+    after[axis] = place_after(step, axis, writer.value(kAxis[axis]));
   }
   return after;
 }
@@ -278,7 +270,8 @@ Vec3 Emitter::set_end(BlockWriter& writer, const Move& move, const Vec3& wanted,
 Vec3 Emitter::place_of_untouched(const BlockWriter& writer, const Move& move) const {
   Vec3 after = at_;
   for (int axis = 0; axis < 3; ++axis)
-    if (const Word* word = writer.find(kAxis[axis])) after[axis] = place_after(move, axis, word->value);
+    if (const Word* word = writer.find(kAxis[axis]))
+      after[axis] = place_after(incremental(move, word), axis, word->value);
   return after;
 }
 

@@ -4,9 +4,11 @@
 //   emitter_lines.cpp  lines, rapids, drilling cycles
 //   emitter_arcs.cpp   arcs
 //   feed_words         the modal feed and the F words that it takes
+//   text_rules         how a language writes words; iso_text_rules: those of ISO
 //   block_writer       one block's text with some of its words changed; number_style: how numbers are written
 //   arc_rounding       arcs whose words are rounded and still close
 //   emitted_text       the whole text put together
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,14 +19,10 @@
 #include "nc/emit/block_writer.h"
 #include "nc/emit/emitted_text.h"
 #include "nc/emit/feed_words.h"
+#include "nc/emit/text_rules.h"
 
 namespace camber::nc {
 
-bool has_code(std::span<const Word> words, char letter, std::initializer_list<double> codes);
-/// Words that act at the end of their block's move.
-std::vector<Word> words_at_end(std::span<const Word> words);
-/// The block calls or ends a subprogram.
-bool calls(std::span<const Word> words);
 /// Some of the pieces have a feed of their own.
 bool has_split_feeds(const MoveEdit& edit);
 bool asks_for_feed(const MoveEdit& edit);
@@ -37,7 +35,6 @@ class Emitter {
 
  private:
   static constexpr char kAxis[] = "XYZ";
-  static constexpr char kCentre[] = "IJK";
   static constexpr double kSamePlaceMm = 1e-9;  ///< sums of increments; far below any decimal
 
   /// One of the moves that a block becomes.
@@ -54,6 +51,8 @@ class Emitter {
   const MoveEdit* without_feeds_that_cannot_be(const MoveEdit& edit);
   std::optional<EmitGap> why_no_feed(const Move& move) const;
   void pass_over(std::size_t first, std::size_t end);
+  BlockWriter writer_of(std::uint32_t block) const { return {program_, block, style_, *rules_}; }
+  void put_lines_before(std::uint32_t block);
   void replace_block(std::uint32_t block, const BlockWriter& writer);
 
   // emitter.cpp: feeds
@@ -65,11 +64,15 @@ class Emitter {
   double length_mm_of(const Vec3& from, const Vec3& to) const;
 
   // emitter.cpp: one axis
-  bool incremental(const Move& move) const { return moves_.state_of(move).incremental; }
+  /// Whether the axis word of the block counts from where the tool stands; without one: a word that would be added.
+  bool incremental(const Move& move, const Word* word) const {
+    return rules_->incremental(moves_.state_of(move), word);
+  }
+  const Word* word_of(const Move& move, int axis) const;
   bool inverse_time(const Move& move) const { return moves_.state_of(move).feed_mode == FeedMode::inverse_time; }
   double step_mm(int decimals) const;
-  double word_for(const Move& move, int axis, double wanted) const;
-  double place_after(const Move& move, int axis, double value) const;
+  double word_for(bool incremental, int axis, double wanted) const;
+  double place_after(bool incremental, int axis, double value) const;
   Vec3 set_end(BlockWriter& writer, const Move& move, const Vec3& wanted, int more_decimals, bool add_words) const;
   Vec3 place_of_untouched(const BlockWriter& writer, const Move& move) const;
 
@@ -92,7 +95,6 @@ class Emitter {
   bool write_split(const Move& move, const MoveEdit& edit, const WantedArc& wanted);
   bool write_arc(const Move& move, const MoveEdit* edit, const WantedArc& wish, int more_decimals);
   bool write_arc_pieces(const Move& move, const MoveEdit& edit, const WantedArc& whole, int more_decimals);
-  void set_centre(BlockWriter& writer, char letter, double value_mm, int decimals) const;
   std::vector<NewWord> words_to(const Move& move, const Vec3& end, int decimals, Vec3& after) const;
   NewWord inverse_time_feed(const BlockWriter& writer, double feed_mm_per_s, const WantedArc& arc);
 
@@ -100,6 +102,7 @@ class Emitter {
   const Interpretation& moves_;
   std::span<const MoveEdit> edits_;
   const EmitOptions& options_;
+  std::unique_ptr<TextRules> rules_;
   NumberStyle style_;
   EmittedText text_;
   FeedWords feeds_;

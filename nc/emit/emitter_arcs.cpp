@@ -76,9 +76,10 @@ WantedArc Emitter::wanted_arc(const BlockWriter& writer, const Move& move, const
   wanted.sweep_rad = arc.sweep_rad;
   wanted.full_turn = std::hypot(move.end_mm[axes.first] - move.start_mm[axes.first],
                                 move.end_mm[axes.second] - move.start_mm[axes.second]) < 1e-6;
-  wanted.by_radius = writer.find('R') != nullptr;
-  wanted.absolute_centre = moves_.state_of(move).absolute_arc_centre;
-  wanted.turns = writer.find('P') ? std::max(1, static_cast<int>(std::lround(writer.value('P')))) : 1;
+  wanted.by_radius = rules_->by_radius(move.block);
+  wanted.absolute_centre = rules_->absolute_centre(moves_.state_of(move), move.block);
+  const double turns = std::abs(arc.sweep_rad) / (2 * kPi);
+  wanted.turns = std::max(1, static_cast<int>(wanted.full_turn ? std::lround(turns) : std::floor(turns) + 1));
   return wanted;
 }
 
@@ -111,7 +112,7 @@ NewWord Emitter::inverse_time_feed(const BlockWriter& writer, double feed_mm_per
 }
 
 bool Emitter::write_arc(const Move& move, const MoveEdit* edit, const WantedArc& wish, int more_decimals) {
-  BlockWriter writer(program_, move.block, style_);
+  BlockWriter writer = writer_of(move.block);
   WantedArc wanted = wish;
   const PlaneAxes axes = axes_of(wanted.plane);
   if (wanted.full_turn)
@@ -121,12 +122,7 @@ bool Emitter::write_arc(const Move& move, const MoveEdit* edit, const WantedArc&
   const int decimals = min_decimals_ + more_decimals;
   const auto arc = round_arc(wanted, unit_mm_, decimals);
   if (!arc) return false;
-  if (wanted.by_radius) {
-    writer.set('R', arc->r_mm / unit_mm_, decimals);
-  } else {
-    set_centre(writer, kCentre[axes.first], arc->first_mm, decimals);
-    set_centre(writer, kCentre[axes.second], arc->second_mm, decimals);
-  }
+  rules_->set_arc(writer, wanted, *arc, unit_mm_, decimals);
   if (inverse_time(move) && edit && edit->feed_mm_per_s)
     writer.set(inverse_time_feed(writer, feed_of(move, edit), wanted));
   set_feed(writer, move, feed_of(move, edit));
@@ -137,7 +133,7 @@ bool Emitter::write_arc(const Move& move, const MoveEdit* edit, const WantedArc&
 
 /// The arc in pieces; false where it stays whole.
 bool Emitter::write_split(const Move& move, const MoveEdit& edit, const WantedArc& wanted) {
-  if (calls(program_.words_of(move.block))) {
+  if (rules_->calls(move.block)) {
     not_made_.push_back({edit.move, EmitGap::subprogram});
     return false;
   }
@@ -157,8 +153,8 @@ bool Emitter::write_arc_pieces(const Move& move, const MoveEdit& edit, const Wan
   const int decimals = min_decimals_ + more_decimals;
   const Vec3 start = at_;
   const auto feed_before = feeds_.state();
-  BlockWriter writer(program_, move.block, style_);
-  const auto at_end = words_at_end(program_.words_of(move.block));
+  BlockWriter writer = writer_of(move.block);
+  const auto at_end = rules_->words_at_end(move.block);
   std::string more;
   for (std::size_t i = 0; i <= edit.via.size(); ++i) {
     const bool last = i == edit.via.size();
@@ -183,28 +179,18 @@ bool Emitter::write_arc_pieces(const Move& move, const MoveEdit& edit, const Wan
     }
     const double feed = last ? feed_of(move, &edit) : edit.via[i].feed_mm_per_s.value_or(feed_of(move, &edit));
     if (i == 0) {
-      if (piece.by_radius) {
-        writer.set('R', arc->r_mm / unit_mm_, decimals);
-      } else {
-        set_centre(writer, kCentre[axes.first], arc->first_mm, decimals);
-        set_centre(writer, kCentre[axes.second], arc->second_mm, decimals);
-      }
+      rules_->set_arc(writer, piece, *arc, unit_mm_, decimals);
       set_feed(writer, move, feed);
     } else {
-      if (piece.by_radius) {
-        words.push_back({'R', arc->r_mm / unit_mm_, decimals});
-      } else {
-        words.push_back({kCentre[axes.first], arc->first_mm / unit_mm_, decimals});
-        words.push_back({kCentre[axes.second], arc->second_mm / unit_mm_, decimals});
-      }
       if (move.feed_mm_per_s > 0)
         if (const auto word = feeds_.next(move, feed, nullptr)) words.push_back(*word);
-      more += text_.line_end_of(move.block) + writer.further_block(words, last ? at_end : std::vector<Word>{});
+      more += text_.line_end_of(move.block) + rules_->further_arc(writer, std::move(words), piece, *arc, unit_mm_,
+                                                                  decimals, last ? at_end : std::vector<Word>{});
     }
     at_ = piece.end_mm;
   }
   for (const Word& word : at_end) writer.take_out(word);
-  text_.replace(move.block, writer.text() + more);
+  text_.replace(move.block, writer.text(text_.line_end_of(move.block)) + more);
   return true;
 }
 
@@ -212,17 +198,14 @@ bool Emitter::write_arc_pieces(const Move& move, const MoveEdit& edit, const Wan
 std::vector<NewWord> Emitter::words_to(const Move& move, const Vec3& end, int decimals, Vec3& after) const {
   std::vector<NewWord> words;
   for (int axis = 0; axis < 3; ++axis) {
-    const double value = rounded(word_for(move, axis, end[axis]), decimals);
-    const double place = place_after(move, axis, value);
+    const bool step = incremental(move, nullptr);
+    const double value = rounded(word_for(step, axis, end[axis]), decimals);
+    const double place = place_after(step, axis, value);
     if (std::abs(place - at_[axis]) < 0.5 * step_mm(decimals)) continue;
     words.push_back({kAxis[axis], value, decimals});
     after[axis] = place;
   }
   return words;
-}
-
-void Emitter::set_centre(BlockWriter& writer, char letter, double value_mm, int decimals) const {
-  if (writer.find(letter) || value_mm != 0) writer.set(letter, value_mm / unit_mm_, decimals);
 }
 
 }  // namespace camber::nc

@@ -22,7 +22,7 @@ void Emitter::go_rapidly(BlockWriter& writer, const Move& move) {
 /// A cycle drills where the tool stands or where its words say: both must be the old place.
 void Emitter::drill(BlockWriter& writer, const Move& move, const Vec3& last_end, int normal) {
   Vec3 place = last_end;
-  if (!incremental(move) || !writer.find('L')) {
+  if (!incremental(move, nullptr) || !writer.find('L')) {
     place[normal] = at_[normal];
     const Vec3 before = at_;
     for (int axis = 0; axis < 3; ++axis) {
@@ -30,7 +30,8 @@ void Emitter::drill(BlockWriter& writer, const Move& move, const Vec3& last_end,
       const int decimals = writer.decimals(kAxis[axis], min_decimals_);
       const bool away = std::abs(place[axis] - before[axis]) > 0.5 * step_mm(decimals) + kSamePlaceMm;
       if (!writer.find(kAxis[axis]) && !away) continue;
-      writer.set(kAxis[axis], rounded(word_for(move, axis, place[axis]), decimals), decimals);
+      const bool step = incremental(move, writer.find(kAxis[axis]));
+      writer.set(kAxis[axis], rounded(word_for(step, axis, place[axis]), decimals), decimals);
     }
   }
   const Move& feeding = cutting_move(index_, end_);
@@ -64,12 +65,12 @@ void Emitter::go_on_line(BlockWriter& writer, const Move& move, const MoveEdit* 
     set_feed(writer, move, pieces.front().feed_mm_per_s);
   std::string more;
   if (pieces.size() > 1) {
-    const auto at_end = words_at_end(program_.words_of(move.block));
+    const auto at_end = rules_->words_at_end(move.block);
     for (const Word& word : at_end) writer.take_out(word);
     for (std::size_t i = 1; i < pieces.size(); ++i)
       more += further_line(writer, move, *edit, pieces[i], i + 1 == pieces.size() ? at_end : std::vector<Word>{});
   }
-  if (writer.changed() || !more.empty()) text_.replace(move.block, writer.text() + more);
+  if (writer.changed() || !more.empty()) text_.replace(move.block, writer.text(text_.line_end_of(move.block)) + more);
 }
 
 /// To the via points and to the end. Points that the decimals cannot tell from the start or the end are left out: they
@@ -80,7 +81,7 @@ std::vector<Emitter::Piece> Emitter::pieces_of(const Move& move, const MoveEdit*
   const double feed = feed_of(move, edit);
   std::vector<Piece> pieces;
   for (const ViaPoint& via : edit->via) pieces.push_back({via.point_mm, via.feed_mm_per_s.value_or(feed)});
-  if (!pieces.empty() && calls(program_.words_of(move.block))) {
+  if (!pieces.empty() && rules_->calls(move.block)) {
     not_made_.push_back({edit->move, EmitGap::subprogram});
     pieces.clear();
   }
@@ -111,8 +112,9 @@ std::string Emitter::further_line(const BlockWriter& writer, const Move& move, c
   for (int axis = 0; axis < 3; ++axis) {
     // An end that stays keeps its decimals.
     const int decimals = edit.end_mm ? min_decimals_ : writer.decimals(kAxis[axis], min_decimals_);
-    const double value = rounded(word_for(move, axis, piece.end_mm[axis]), decimals);
-    const double place = place_after(move, axis, value);
+    const bool step = incremental(move, nullptr);
+    const double value = rounded(word_for(step, axis, piece.end_mm[axis]), decimals);
+    const double place = place_after(step, axis, value);
     if (std::abs(place - at_[axis]) < 0.5 * step_mm(decimals)) continue;
     words.push_back({kAxis[axis], value, decimals});
     after[axis] = place;

@@ -11,6 +11,7 @@
 
 #include "nc/emit.h"
 #include "nc/interpreter.h"
+#include "nc/language.h"
 #include "nc/summary.h"
 
 namespace {
@@ -35,7 +36,7 @@ Read read(const std::string& text, const nc::InterpreterOptions& options) {
   Read r;
   Diagnostics diagnostics;
   try {
-    r.program = nc::read_program(SourceText("fuzz.nc", text), diagnostics);
+    r.program = nc::read_program(SourceText("fuzz.nc", text), nc::language_asked_for(options), diagnostics);
     r.moves = nc::interpret(r.program, options, diagnostics);
     r.clean = !diagnostics.has_errors();
   } catch (const InputError& e) {
@@ -59,6 +60,9 @@ bool within_reach(const nc::Interpretation& moves) {
 /// frame from there, or compute a path beside a contour.
 bool edits_stay_where_they_are(const Read& r) {
   if (!r.program.macro.expressions.list.empty()) return false;
+  if (r.program.language != nc::LanguageId::iso)
+    for (const nc::Block& block : r.program.blocks)
+      if (block.flow) return false;
   for (const nc::ModalState& s : r.moves.states)
     if (s.cutter_radius) return false;
   return r.moves.frames.size() == 1;

@@ -26,7 +26,7 @@ TEST(ControlKinds, AreFoundByUniqueNames) {
     EXPECT_EQ(control_kind_named(kind.name), &kind);
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
   }
-  EXPECT_EQ(control_kind_named("heidenhain"), nullptr);
+  EXPECT_EQ(control_kind_named("bosch"), nullptr);
   EXPECT_EQ(machine_of("[control]\n").control.kind.name, default_control_kind().name);
 }
 

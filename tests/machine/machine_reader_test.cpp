@@ -215,10 +215,10 @@ TEST(MachineReader, RefusesWrongTypes) {
 }
 
 TEST(MachineReader, RefusesAnUnknownWord) {
-  EXPECT_EQ(messages("[control]\ndialect = \"heidenhain\"\n"),
-            "m.toml:2:11: error: dialect is \"heidenhain\"; \"fanuc\", \"haas\", \"mazak\" or \"linuxcnc\" was "
-            "expected [value-choice]\n"
-            "    dialect = \"heidenhain\"\n"
+  EXPECT_EQ(messages("[control]\ndialect = \"bosch\"\n"),
+            "m.toml:2:11: error: dialect is \"bosch\"; \"fanuc\", \"haas\", \"mazak\", \"linuxcnc\", "
+            "\"heidenhain\" or \"siemens\" was expected [value-choice]\n"
+            "    dialect = \"bosch\"\n"
             "              ^");
 }
 

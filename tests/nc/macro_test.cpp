@@ -219,7 +219,7 @@ TEST(NcMacro, TheTextShowsItsDialect) {
   EXPECT_EQ(run_text("#1=[5 AND 2]\nX[#1+1]", {.inch = false}), "1 0 0");
   EXPECT_EQ(read_text("o1 if [1]\nG4 P2\no1 endif\n", {.inch = false}).moves.moves.back().dwell_s, 2);
   EXPECT_EQ(dialect_named("haas")->name, "haas");
-  EXPECT_EQ(dialect_named("siemens"), nullptr);
+  EXPECT_EQ(dialect_named("bosch"), nullptr);
 }
 
 // --- files ----------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "nc/emit.h"
+#include "nc/language.h"
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {
@@ -100,25 +101,31 @@ TEST(NcReader, RefusesWhatIsNoNumber) {
 TEST(NcReader, RefusesACommentWithoutAnEnd) {
   EXPECT_EQ(complaint("G0 X1 (no end"), "p.nc:1:7: error: the comment has no closing `)` in its block [comment-open]");
 }
+/// What is said of a text that is read as ISO whatever it shows.
+std::vector<std::string> complaints_as_iso(const std::string& text) {
+  std::vector<std::string> out;
+  Diagnostics diagnostics;
+  try {
+    read_program(SourceText("p.nc", text), LanguageId::iso, diagnostics);
+  } catch (const InputError& e) {
+    for (const Diagnostic& d : e.diagnostics()) out.push_back(headline(d));
+  }
+  return out;
+}
+
 TEST(NcReader, NamesTheLanguageOfOtherControlsAndStops) {
-  const Read siemens = read_text("N10 G17\nN20 SUPA G0 Z=_Z_HOME D0\nN30 T=\"MILL\"\n");
-  EXPECT_EQ(
-      siemens.messages,
-      std::vector<std::string>{"p.nc:2:5: error: SUPA belongs to a Siemens Sinumerik program, which is not supported; "
-                               "Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
-  EXPECT_EQ(complaint("T=\"MILL\""),
-            "p.nc:1:1: error: T= belongs to a Siemens Sinumerik program, which is not supported; Camber reads programs "
-            "for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]");
-  // Numbered blocks are called by their language once, wherever the first of them stands.
-  EXPECT_EQ(read_text("0 BEGIN PGM PART MM\n1 BLK FORM 0.1 Z X+0\n2 TOOL CALL 1 Z S3500\n").messages,
-            std::vector<std::string>{"p.nc:1:3: error: BEGIN belongs to a Heidenhain program, which is not supported; "
-                                     "Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [heidenhain]"});
-  EXPECT_EQ(read_text("( Einrichtblatt\n12  BLK  FORM 0.1 Z X+0\n").messages,
-            std::vector<std::string>{"p.nc:2:5: error: BLK belongs to a Heidenhain program, which is not supported; "
-                                     "Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [heidenhain]"});
-  EXPECT_EQ(complaint("BEGIN PGM PART MM"),
-            "p.nc:1:1: error: BEGIN belongs to a Heidenhain program, which is not supported; Camber reads programs for "
-            "Fanuc, Haas, Mazak EIA and LinuxCNC [heidenhain]");
+  EXPECT_EQ(complaints_as_iso("N10 G17\nN20 SUPA G0 Z=_Z_HOME D0\nN30 T=\"MILL\"\n"),
+            std::vector<std::string>{
+                "p.nc:2:5: error: SUPA belongs to Siemens Sinumerik programs, and this text is read as ISO G code; "
+                "--dialect siemens reads it in that language [siemens]"});
+  EXPECT_EQ(complaints_as_iso("T=\"MILL\""),
+            std::vector<std::string>{
+                "p.nc:1:1: error: T= belongs to Siemens Sinumerik programs, and this text is read as ISO G code; "
+                "--dialect siemens reads it in that language [siemens]"});
+  EXPECT_EQ(complaints_as_iso("BEGIN PGM PART MM"),
+            std::vector<std::string>{
+                "p.nc:1:1: error: BEGIN belongs to Heidenhain Klartext programs, and this text is read as ISO G code; "
+                "--dialect heidenhain reads it in that language [heidenhain]"});
 }
 TEST(NcReader, TakesMissingNumbersOfMinorWordsAsZeroAndWarns) {
   const Read r = read_text("G21 G99 G82 X1 Y1 Z-1 R1 P F15.04");

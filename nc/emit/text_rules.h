@@ -1,0 +1,84 @@
+#pragma once
+// How a language writes the words that an edit changes. The emitter decides what each block becomes; the rules say how
+// the language puts it. One object for each emission: rules may follow what was written.
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "nc/emit/arc_rounding.h"
+#include "nc/emit/number_style.h"
+#include "nc/move.h"
+#include "nc/program.h"
+
+namespace camber::nc {
+
+class BlockWriter;
+
+/// A word of a block that is made anew.
+struct NewWord {
+  char letter = 0;
+  double value = 0;
+  int decimals = 0;
+  const NumberStyle* style = nullptr;  ///< none: as the coordinates
+};
+
+/// Letters of Program::words are X Y Z for coordinates, F for the feed, I J K for arc centres and R for a radius in
+/// every language, whatever the text says (IX+5, X=IC(5), CR=8).
+class TextRules {
+ public:
+  explicit TextRules(const Program& program) : program_(program) {}
+  virtual ~TextRules() = default;
+
+  // What a block does
+  /// It takes axes to machine coordinates, which edits leave alone (G53, G28; M91; SUPA).
+  virtual bool goes_to_machine_place(std::uint32_t block) const = 0;
+  /// It also calls or ends a subprogram: it cannot be split.
+  virtual bool calls(std::uint32_t block) const = 0;
+  /// Words that act at the end of its move: of a block that is split they go to the last piece.
+  virtual std::vector<Word> words_at_end(std::uint32_t block) const = 0;
+  /// The program reads its modal feed, or something relies on it that has no F word of its own.
+  virtual bool reads_feed() const { return false; }
+
+  // Coordinates
+  /// Whether the axis word counts from where the tool stands; `word` null: a word that would be added.
+  virtual bool incremental(const ModalState& state, const Word* word) const = 0;
+
+  // Text
+  /// A new word: "X12.5", "X+12.5", "CR=8". `number` is in the style of the program.
+  virtual std::string new_word(std::uint32_t block, char letter, const std::string& number) const = 0;
+  /// Where a new word goes in the block, and whether the blank that parts it from its neighbour comes before it.
+  struct Place {
+    std::size_t offset = 0;
+    bool behind = true;  ///< a neighbour; else in front of one
+  };
+  virtual Place place_of(std::uint32_t block, char letter) const = 0;
+  /// A further block of these words, and of words of `block` as they are.
+  virtual std::string further_block(std::uint32_t block, bool blanks, std::span<const std::string> words,
+                                    std::span<const Word> own) const = 0;
+  /// Gives new lines among these their block numbers, where the program has numbers on every line.
+  virtual std::string numbered(std::string lines) const { return lines; }
+  /// A line of comment.
+  virtual std::string comment(std::string_view text) const = 0;
+  /// The block before which a header of comments goes.
+  virtual std::size_t header_block() const = 0;
+
+  // Arcs
+  virtual bool by_radius(std::uint32_t block) const = 0;
+  virtual bool absolute_centre(const ModalState& state, std::uint32_t block) const = 0;
+  /// The block's own arc gets this centre or radius.
+  virtual void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm,
+                       int decimals) = 0;
+  /// A further arc behind it: the block's text. `words`: end point and feed.
+  virtual std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
+                                  const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) = 0;
+  /// What was written before has changed what the block relies on beside position and feed (a pole): lines to put
+  /// before it; empty: nothing.
+  virtual std::string lines_before(std::uint32_t) { return {}; }
+
+ protected:
+  const Program& program_;
+};
+
+}  // namespace camber::nc

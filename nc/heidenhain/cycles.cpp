@@ -1,0 +1,905 @@
+// Cycles: definitions, calls, patterns.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "nc/canned_cycles.h"
+#include "nc/heidenhain/klartext.h"
+
+namespace camber::nc::heidenhain {
+namespace {
+
+constexpr double kAboveLastDepthMm = 0.2;  ///< rapids in a hole stop so far above the last depth (MP7410 and its like)
+constexpr double kFastFeed = 99999;        ///< FMAX in a parameter of a cycle
+
+/// Machining cycles that are made.
+constexpr std::array kMade{1, 2, 4, 5, 12, 17, 200, 201, 202, 203, 204, 205, 206, 207, 208, 209, 240, 241};
+
+struct Named {
+  int first, last;
+  std::string_view what, instead;
+};
+/// Cycles that are refused by name.
+constexpr std::array kRefused{
+    Named{3, 3, "slot milling", "L blocks of the slot were expected"},
+    Named{6, 6, "an SL cycle", "the finished path was expected"},
+    Named{14, 16, "an SL cycle", "the finished path was expected"},
+    Named{18, 18, "thread cutting", "cycle 206 or 207 was expected"},
+    Named{20, 25, "an SL cycle", "the finished path was expected"},
+    Named{27, 29, "a cylinder surface", "a path in X, Y and Z was expected"},
+    Named{39, 39, "a cylinder surface", "a path in X, Y and Z was expected"},
+    Named{210, 219, "a slot, pocket or stud", "the finished path was expected"},
+    Named{222, 233, "a milling cycle", "the finished path was expected"},
+    Named{251, 258, "a pocket, slot or stud", "the finished path was expected"},
+    Named{262, 267, "thread milling", "CP blocks of the helix were expected"},
+    Named{268, 277, "an SL or OCM cycle", "the finished path was expected"},
+    Named{278, 299, "a milling or turning cycle", "the finished path was expected"},
+    Named{400, 499, "a probing cycle", "leave out probing, or set the datum that it would set (CYCL DEF 247)"},
+    Named{800, 899, "a turning cycle", "milling blocks were expected"},
+};
+
+}  // namespace
+
+// --- definitions
+
+void Klartext::define_cycle(const Statement& s) {
+  Cursor at = cursor(s);
+  const auto number = at.integer();
+  if (!number) throw FormulaError(s.begin, "cycle", "CYCL DEF without a number; CYCL DEF 200 was expected");
+  int part = -1;
+  if (at.behind(0) == '.' && is_digit(at.behind(1))) {
+    at.advance();
+    part = at.integer().value_or(0);
+  }
+  if (*number < 200 && part < 0 && *number != 247) part = 0;
+  const auto refused = std::ranges::find_if(kRefused, [&](const Named& n) { return *number >= n.first && *number <= n.last; });
+  if (refused != kRefused.end() && part <= 0)
+    error(s.begin, "not-supported",
+          fmt::format("CYCL DEF {} ({}) is not supported; {}", *number, refused->what, refused->instead));
+  if (refused != kRefused.end()) return;
+  if (*number < 200) return define_old_cycle(*number, part, at, s);
+
+  // The name, then the parameters.
+  while (at.more()) {
+    const std::size_t begin = at.offset();
+    Cursor parameter = at;
+    const auto name = read_parameter(parameter);
+    if (!name || !parameter.accept('=')) {
+      at.go_to(begin + 1);
+      continue;
+    }
+    at = parameter;
+    if (at.accept_prefix("FMAX"))
+      parameters_.set(*name, kFastFeed);
+    else if (at.accept_prefix("FAUTO"))
+      parameters_.set(*name, tool_feed_ ? mm_per_min_from_mm_per_s(*tool_feed_) / unit_mm() : 0);
+    else if (at.letters() == "PREDEF")
+      throw FormulaError(at.offset(), "not-supported", "PREDEF (GLOBAL DEF) is not supported; a number was expected");
+    else if (name->kind == 'S')
+      parameters_.set_text(name->number, read_text_formula(at, parameters_));
+    else
+      parameters_.set(*name, read_formula(at, parameters_));
+  }
+  if (*number == 247) {
+    const int preset = static_cast<int>(q_if_set(339).value_or(0));
+    if (preset_ >= 0 && preset != preset_ && !preset_told_) {
+      preset_told_ = true;
+      warn(s.begin, "work-offsets",
+           "the program uses more than one preset (CYCL DEF 247); their distance is not known, and all are treated as one "
+           "frame");
+    }
+    preset_ = preset;
+    return;
+  }
+  if (*number == 220 || *number == 221) return run_pattern(*number);
+  if (*number >= 300) {
+    warn(s.begin, "machine-cycle",
+         fmt::format("CYCL DEF {} is a cycle of the machine's maker; what it does is not known, and it is passed over", *number));
+    return;
+  }
+  if (std::ranges::find(kMade, *number) == kMade.end())
+    return error(s.begin, "not-supported",
+                 fmt::format("CYCL DEF {} is not supported; drilling cycles 200 to 209, 240 and 241 were expected", *number));
+  cycle_ = {};
+  cycle_.number = *number;
+  cycle_.offset = s.begin;
+}
+
+/// Cycles in parts, CYCL DEF 7.1: each part has one value.
+void Klartext::define_old_cycle(int number, int part, Cursor at, const Statement& s) {
+  switch (number) {
+    case 7:
+      if (part > 0) shift_datum(at, s.begin);
+      return;
+    case 8:
+      if (part > 0) set_mirror(at);
+      return;
+    case 10:
+      if (part > 0) set_rotation(at);
+      return;
+    case 11:
+      if (part > 0) set_scale(at);
+      return;
+    case 26:
+      if (part > 0) set_axis_scale(at);
+      return;
+    case 19:
+      return set_working_plane(at, part);
+    case 32:
+      return set_tolerance(part, at);
+    case 13:
+      if (part > 0) add_event(EventKind::spindle_orient, 19);
+      return;
+    default:
+      break;
+  }
+  if (number == 12) {
+    if (part == 0) {
+      cycle_ = {};
+      cycle_.number = 12;
+      cycle_.offset = s.begin;
+      return;
+    }
+    at.accept("PGM");
+    std::string_view text = file().source.text();
+    at.more();
+    text = text.substr(at.offset(), s.end - at.offset());
+    text = text.substr(0, text.find_first_of(" ;\r\n"));
+    selected_program_ = std::string(text);
+    return;
+  }
+  if (number != 9 && std::ranges::find(kMade, number) == kMade.end())
+    return error(s.begin, "not-supported", fmt::format("CYCL DEF {} is not supported; cycles 1, 2, 4, 5, 7 to 13, 17, 19, 26, "
+                                                       "32 or 200 to 209 were expected",
+                                                       number),
+                 fmt::format("cycle {}", number));
+  if (part == 0) {
+    if (number == 9) return;
+    cycle_ = {};
+    cycle_.number = number;
+    cycle_.offset = s.begin;
+    return;
+  }
+  // A word, a value, perhaps a feed: ZUSTLG 4 F100, V.ZEIT 0.5, X+145, F200 DR- RADIUS 16.
+  std::optional<double> value, feed;
+  while (at.more()) {
+    const std::size_t begin = at.offset();
+    const std::string word = at.letters();
+    if (word == "RADIUS") {
+      at.advance(word.size());
+      cycle_.radius = known(read_value(at, parameters_), begin) * unit_mm();
+      if (!value) value = cycle_.radius / unit_mm();
+    } else if (word == "DR") {
+      at.advance(word.size());
+      cycle_.sense = at.peek() == '-' ? -1 : 1;
+      at.advance();
+    } else if (word == "F" && begins_number_behind(at)) {
+      at.advance();
+      feed = known(read_value(at, parameters_), begin);
+    } else if (word.starts_with('Q') && read_parameter_here(at)) {
+      value = known(read_value(at, parameters_), begin);
+    } else if (!word.empty()) {
+      at.advance(word.size());
+      if (at.behind(0) == '.') at.advance();
+    } else if (begins_number(at)) {
+      value = known(read_value(at, parameters_), begin);
+    } else {
+      at.advance();
+    }
+  }
+  if (number == 9) {
+    if (value && *value > 0) {
+      Move& move = add_move(MoveKind::dwell, position_mm_);
+      move.dwell_s = *value;
+      move.editable = false;
+    } else {
+      error(s.begin, "dwell", "CYCL DEF 9 without a time; seconds were expected in CYCL DEF 9.1");
+    }
+    return;
+  }
+  if (cycle_.number != number) return;
+  if (value) cycle_.values[part] = *value;
+  if (feed) cycle_.feeds[part] = mm_per_s_from_mm_per_min(*feed * unit_mm());
+}
+
+bool Klartext::read_parameter_here(Cursor at) { return read_parameter(at).has_value(); }
+
+bool Klartext::begins_number_behind(Cursor at) {
+  at.advance();
+  return begins_number(at);
+}
+
+/// CYCL DEF 32.1 T0.05, 32.2 HSC-MODE:1 TA0.5; 32.1 without a value: off.
+void Klartext::set_tolerance(int part, Cursor at) {
+  if (part == 0) {  // CYCL DEF 32.0 alone resets it; 32.1 sets it
+    state_.contouring = Contouring::none;
+    state_.blend_tolerance_mm = -1;
+    state_changed_ = true;
+    return;
+  }
+  if (part == 1) {
+    if (!at.accept_prefix("T") && !begins_number(at)) return;
+    const std::size_t begin = at.offset();
+    if (!begins_number(at)) return;
+    const double tolerance = known(read_value(at, parameters_), begin) * unit_mm();
+    if (tolerance < 0)
+      throw FormulaError(begin, "tolerance", fmt::format("a tolerance of {}; zero or more was expected", tolerance));
+    if (tolerance == 0) return;
+    state_.contouring = Contouring::cycle32;
+    state_.blend_tolerance_mm = tolerance;
+    state_changed_ = true;
+  }
+}
+
+// --- calls
+
+double Klartext::q(int number) {
+  const double value = parameters_.value({'Q', number}, cycle_.offset);
+  return known(value, cycle_.offset);
+}
+
+std::optional<double> Klartext::q_if_set(int number) {
+  try {
+    return q(number);
+  } catch (const FormulaError&) {
+    return std::nullopt;
+  }
+}
+
+/// mm/s; infinite: rapid.
+double Klartext::feed_q(int number) {
+  const double value = q(number);
+  if (value >= 9999 * (inch_ ? 0.1 : 10)) return std::numeric_limits<double>::infinity();
+  return mm_per_s_from_mm_per_min(value * unit_mm());
+}
+
+/// CYCL CALL, CYCL CALL PAT, CYCL CALL POS X Y Z F.
+void Klartext::run_cycle_call(const Statement& s) {
+  Cursor at = cursor(s);
+  std::vector<BlockValues::Function> functions;
+  const auto read_rest = [&](Vec3* place) {
+    std::uint8_t given = 0;
+    while (at.more()) {
+      const std::size_t begin = at.offset();
+      const char c = at.peek();
+      if (at.accept_prefix("FMAX")) continue;
+      at.advance();
+      if (c == 'M') {
+        if (const auto code = at.integer()) functions.push_back({*code, std::nullopt, begin});
+      } else if (c == 'F') {
+        BlockValues b;
+        b.feed = known(read_value(at, parameters_), begin);
+        set_feed(b);
+      } else if (place && c >= 'X' && c <= 'Z') {
+        (*place)[c - 'X'] = known(read_value(at, parameters_), begin) * unit_mm();
+        given = static_cast<std::uint8_t>(given | 1U << (c - 'X'));
+      } else {
+        at.go_to(begin);
+        throw FormulaError(begin, "not-a-word", fmt::format("{} in CYCL CALL; M or F was expected", at.word()));
+      }
+    }
+    return given;
+  };
+  const auto with_functions = [&](const auto& body) {
+    BlockValues b;
+    b.functions = functions;
+    functions_before(b);
+    body();
+    functions_after(b);
+  };
+  editable_ = false;
+  if (at.accept("POS")) {
+    Vec3 place = programmed();
+    const std::uint8_t given = read_rest(&place);
+    with_functions([&] {
+      Vec3 over = programmed();
+      const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+      over[axes.first] = place[axes.first];
+      over[axes.second] = place[axes.second];
+      if (place[axes.normal] > over[axes.normal]) {
+        Vec3 up = programmed();
+        up[axes.normal] = place[axes.normal];
+        cycle_move(MoveKind::rapid, up, 0);
+        over[axes.normal] = place[axes.normal];
+      }
+      cycle_move(MoveKind::rapid, over, 0);
+      settle(given);
+      cycle_move(MoveKind::rapid, place, 0);
+      call_cycle(s.begin);
+    });
+    return;
+  }
+  if (at.accept("PAT")) {
+    read_rest(nullptr);
+    if (pattern_.empty()) throw FormulaError(s.begin, "cycle", "CYCL CALL PAT without a pattern; PATTERN DEF was expected before");
+    with_functions([&] {
+      const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+      for (const Vec3& place : pattern_) {
+        parameters_.set({'Q', 203}, place[axes.normal] / unit_mm());
+        Vec3 over = programmed();
+        over[axes.first] = place[axes.first];
+        over[axes.second] = place[axes.second];
+        cycle_move(MoveKind::rapid, over, 0);
+        settle(static_cast<std::uint8_t>(1U << axes.first | 1U << axes.second));
+        call_cycle(s.begin);
+      }
+    });
+    return;
+  }
+  read_rest(nullptr);
+  with_functions([&] { call_cycle(s.begin); });
+}
+
+void Klartext::call_cycle(std::size_t offset) {
+  if (cycle_.number < 0) {
+    error(offset, "cycle", "a cycle is called and none is defined; CYCL DEF was expected before");
+    return;
+  }
+  if (radius_.active && radius_.radius_mm != 0) {
+    error(offset, "cutter-radius", "a cycle under RL or RR; R0 was expected before");
+    end_compensation();
+  }
+  const bool editable = std::exchange(editable_, false);
+  cycle_.offset = offset;
+  if (cycle_.number == 12)
+    open_program(selected_program_, offset);
+  else if (cycle_.number == 208)
+    mill_bore();
+  else if (cycle_.number == 4 || cycle_.number == 5)
+    mill_old_pocket();
+  else if (cycle_.is_old())
+    drill_old();
+  else
+    drill(cycle_.number);
+  cycle_g_ = 0;
+  editable_ = editable;
+}
+
+void Klartext::cycle_move(MoveKind kind, const Vec3& programmed_end, double feed_mm_per_s, double dwell_s) {
+  const Vec3 end = end_in_moves(programmed_end, 7);
+  if (kind != MoveKind::dwell && end == position_mm_) return;
+  if (++cycle_moves_ > kMaxCycleMoves)
+    throw FormulaError(cycle_.offset, "cycle",
+                       fmt::format("the cycles make more than {} moves; fewer pecks were expected", kMaxCycleMoves));
+  const bool rapid = kind == MoveKind::linear && std::isinf(feed_mm_per_s);
+  Move& move = add_move(rapid ? MoveKind::rapid : kind, end);
+  move.canned = true;
+  move.editable = false;
+  move.cycle = static_cast<std::uint8_t>(cycle_g_);
+  move.dwell_s = dwell_s;
+  if (kind == MoveKind::linear && !rapid) move.feed_mm_per_s = feed_mm_per_s;
+}
+
+void Klartext::drill_hole(const Hole& h) {
+  const int normal = tool_axis_;
+  const double top = h.surface_mm + h.clearance_mm, bottom = h.surface_mm + h.depth_mm;
+  const auto height = [&] { return programmed()[normal]; };
+  const auto go = [&](MoveKind kind, double to, double feed) {
+    Vec3 end = programmed();
+    end[normal] = to;
+    cycle_move(kind, end, feed);
+  };
+  const auto dwell = [&](double seconds) {
+    if (seconds > 0) cycle_move(MoveKind::dwell, programmed(), 0, seconds);
+  };
+  prepare_cutting("a cycle", 0);
+  if (h.depth_mm == 0) return;
+  if (h.depth_mm > 0)
+    throw FormulaError(cycle_.offset, "cycle",
+                       fmt::format("the depth of cycle {} is positive ({}); a negative one was expected", cycle_.number,
+                                   h.depth_mm / unit_mm()));
+  if (h.feed_mm_per_s <= 0)
+    throw FormulaError(cycle_.offset, "feed-missing",
+                       fmt::format("cycle {} has no feed; a feed greater than zero was expected", cycle_.number));
+  go(MoveKind::rapid, top, 0);
+  const double begin = h.start_mm < 0 ? h.surface_mm + h.start_mm : top;
+  if (h.start_mm < 0) go(MoveKind::linear, begin + std::min(h.clearance_mm, top - begin), h.pre_feed_mm_per_s);
+  double depth = h.start_mm < 0 ? h.surface_mm + h.start_mm : h.surface_mm;
+  double peck = h.peck_mm > 0 ? h.peck_mm : depth - bottom;
+  if ((depth - bottom) / std::max(1e-12, h.less_mm > 0 ? std::min(peck, std::max(h.least_mm, 1e-12)) : peck) > kMaxPecks)
+    throw FormulaError(cycle_.offset, "cycle", "the cycle would peck more than 100000 times; a larger Q202 was expected");
+  int breaks = h.breaks;
+  while (depth > bottom) {
+    const double next = std::max(depth - peck, bottom);
+    peck = h.less_mm > 0 ? std::max(peck - h.less_mm, std::max(h.least_mm, 1e-6)) : peck;
+    go(MoveKind::linear, next, h.feed_mm_per_s);
+    depth = next;
+    if (depth <= bottom) break;
+    if (breaks > 0) {
+      --breaks;
+      go(MoveKind::linear, depth + h.break_mm, std::numeric_limits<double>::infinity());
+      continue;
+    }
+    breaks = h.breaks;
+    go(MoveKind::rapid, top, 0);
+    dwell(h.dwell_top_s);
+    go(MoveKind::rapid, std::min(depth + h.above_mm, top), 0);
+  }
+  dwell(h.dwell_s);
+  Vec3 off = Vec3::Zero();
+  if (h.off_mm != Vec3::Zero()) {
+    off = h.off_mm;
+    cycle_move(MoveKind::rapid, programmed() + off, 0);
+  }
+  if (h.feed_out_mm_per_s)
+    go(MoveKind::linear, top, *h.feed_out_mm_per_s);
+  else
+    go(MoveKind::rapid, top, 0);
+  go(MoveKind::rapid, std::max(top, h.surface_mm + h.second_mm), 0);
+  if (off != Vec3::Zero()) cycle_move(MoveKind::rapid, programmed() - off, 0);
+  (void)height;
+}
+
+/// Cycles 200 to 209, 240, 241 at the place of the tool.
+void Klartext::drill(int number) {
+  const double unit = unit_mm();
+  Hole h;
+  h.surface_mm = q_if_set(203).value_or(0) * unit;
+  h.clearance_mm = q(200) * unit;
+  h.second_mm = q_if_set(204).value_or(0) * unit;
+  h.dwell_s = q_if_set(211).value_or(0);
+  if (number != 240) h.depth_mm = number == 204 ? 0 : q(201) * unit;
+  const auto tap = [&](double pitch) {
+    const double rpm = state_.spindle_speed_rpm;
+    if (rpm <= 0) throw FormulaError(cycle_.offset, "spindle-speed", "tapping without a spindle speed; S was expected");
+    cycle_g_ = pitch < 0 ? 74 : 84;
+    h.feed_mm_per_s = std::abs(pitch) * unit * rpm / 60;
+    h.feed_out_mm_per_s = h.feed_mm_per_s;
+    h.dwell_s = 0;
+  };
+  switch (number) {
+    case 200:
+      h.feed_mm_per_s = feed_q(206);
+      h.peck_mm = q(202) * unit;
+      h.dwell_top_s = q_if_set(210).value_or(0);
+      cycle_g_ = h.peck_mm < -h.depth_mm ? 83 : h.dwell_s > 0 ? 82 : 81;
+      break;
+    case 201: {
+      h.feed_mm_per_s = feed_q(206);
+      const double out = feed_q(208);
+      h.feed_out_mm_per_s = out > 0 ? out : h.feed_mm_per_s;
+      cycle_g_ = h.dwell_s > 0 ? 89 : 85;
+      break;
+    }
+    case 202: {
+      h.feed_mm_per_s = feed_q(206);
+      const double out = feed_q(208);
+      h.feed_out_mm_per_s = out > 0 ? out : h.feed_mm_per_s;
+      if (std::isinf(*h.feed_out_mm_per_s)) h.feed_out_mm_per_s.reset();
+      const int direction = static_cast<int>(q_if_set(214).value_or(0));
+      const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+      // 1: the tool leaves the wall towards minus of the first axis, 2: of the second, 3 and 4: towards plus.
+      if (direction >= 1 && direction <= 4)
+        h.off_mm[direction % 2 == 1 ? axes.first : axes.second] = direction <= 2 ? -kAboveLastDepthMm : kAboveLastDepthMm;
+      cycle_g_ = 76;
+      break;
+    }
+    case 203: {
+      h.feed_mm_per_s = feed_q(206);
+      h.peck_mm = q(202) * unit;
+      h.less_mm = q_if_set(212).value_or(0) * unit;
+      h.least_mm = q_if_set(205).value_or(0) * unit;
+      h.breaks = static_cast<int>(q_if_set(213).value_or(0));
+      h.break_mm = q_if_set(256).value_or(kAboveLastDepthMm) * unit;
+      h.dwell_top_s = q_if_set(210).value_or(0);
+      if (const auto out = q_if_set(208)) {
+        const double feed = feed_q(208);
+        if (*out > 0 && !std::isinf(feed)) h.feed_out_mm_per_s = feed;
+        if (*out == 0) h.feed_out_mm_per_s = h.feed_mm_per_s;
+      }
+      cycle_g_ = h.peck_mm < -h.depth_mm ? (h.breaks > 0 ? 73 : 83) : 81;
+      break;
+    }
+    case 205:
+      h.feed_mm_per_s = feed_q(206);
+      h.peck_mm = q(202) * unit;
+      h.less_mm = q_if_set(212).value_or(0) * unit;
+      h.least_mm = q_if_set(205).value_or(0) * unit;
+      h.above_mm = q_if_set(258).value_or(kAboveLastDepthMm) * unit;
+      h.start_mm = -std::abs(q_if_set(379).value_or(0) * unit);
+      h.pre_feed_mm_per_s = q_if_set(253) ? feed_q(253) : h.feed_mm_per_s;
+      h.break_mm = q_if_set(256).value_or(kAboveLastDepthMm) * unit;
+      if (const auto every = q_if_set(257); every && *every > 0 && h.peck_mm > 0) {
+        // Chip breaks every so much; the chip is cleared after each depth of Q202.
+        h.breaks = std::max(0, static_cast<int>(std::ceil(h.peck_mm / (*every * unit) - 1e-9)) - 1);
+        h.peck_mm = *every * unit;
+      }
+      cycle_g_ = h.breaks > 0 ? 73 : 83;
+      break;
+    case 206:
+      h.feed_mm_per_s = feed_q(206);
+      h.feed_out_mm_per_s = h.feed_mm_per_s;
+      cycle_g_ = 84;
+      break;
+    case 207:
+      tap(q(239));
+      break;
+    case 209:
+      tap(q(239));
+      if (const auto every = q_if_set(257); every && *every > 0) {
+        h.peck_mm = *every * unit;
+        h.break_mm = q_if_set(256).value_or(0) * unit;
+        h.breaks = h.break_mm > 0 ? 1'000'000 : 0;
+      }
+      break;
+    case 240:
+      h.feed_mm_per_s = feed_q(206);
+      h.dwell_s = q_if_set(211).value_or(0);
+      if (q_if_set(343).value_or(0) == 1) {
+        // By the diameter of the cone: the point angle is in the tool table; 90 degrees are taken.
+        h.depth_mm = -0.5 * std::abs(q(344)) * unit;
+        warn(cycle_.offset, "point-angle",
+             "cycle 240 by its diameter needs the point angle of the tool table; 90 degrees are assumed");
+      } else {
+        h.depth_mm = q(201) * unit;
+      }
+      cycle_g_ = 82;
+      break;
+    case 241:
+      h.feed_mm_per_s = feed_q(206);
+      h.start_mm = -std::abs(q_if_set(379).value_or(0) * unit);
+      h.pre_feed_mm_per_s = q_if_set(253) ? feed_q(253) : h.feed_mm_per_s;
+      if (q_if_set(208)) {
+        const double out = feed_q(208);
+        if (out > 0 && !std::isinf(out)) h.feed_out_mm_per_s = out;
+      }
+      cycle_g_ = h.dwell_s > 0 ? 82 : 81;
+      break;
+    default:  // 204
+      return bore_back();
+  }
+  drill_hole(h);
+}
+
+/// Cycle 204: a counterbore from below.
+void Klartext::bore_back() {
+  const double unit = unit_mm();
+  const double surface = q_if_set(203).value_or(0) * unit, clearance = q(200) * unit;
+  const double depth = q(249) * unit, thickness = q(250) * unit, off = q(251) * unit, edge = q(252) * unit;
+  const double feed = feed_q(254), pre_feed = feed_q(253), dwell = q_if_set(255).value_or(0);
+  const int direction = static_cast<int>(q_if_set(214).value_or(1));
+  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+  Vec3 shift = Vec3::Zero();
+  if (direction >= 1 && direction <= 4)
+    shift[direction % 2 == 1 ? axes.first : axes.second] = direction <= 2 ? -off : off;
+  if (feed <= 0) throw FormulaError(cycle_.offset, "feed-missing", "cycle 204 has no feed; Q254 greater than zero was expected");
+  cycle_g_ = 87;
+  prepare_cutting("a cycle", 0);
+  const auto go = [&](double height, double at_feed) {
+    Vec3 end = programmed();
+    end[tool_axis_] = height;
+    cycle_move(MoveKind::linear, end, at_feed);
+  };
+  constexpr double kRapid = std::numeric_limits<double>::infinity();
+  const Vec3 centre = programmed();
+  go(surface + clearance, kRapid);
+  cycle_move(MoveKind::rapid, programmed() + shift, 0);
+  go(surface - thickness - edge - clearance, pre_feed);
+  cycle_move(MoveKind::linear, programmed() - shift, pre_feed);
+  go(surface - thickness - edge + depth, feed);
+  if (dwell > 0) cycle_move(MoveKind::dwell, programmed(), 0, dwell);
+  go(surface - thickness - edge - clearance, pre_feed);
+  cycle_move(MoveKind::linear, programmed() + shift, pre_feed);
+  go(surface + std::max(clearance, q_if_set(204).value_or(0) * unit), kRapid);
+  Vec3 back = centre;
+  back[tool_axis_] = programmed()[tool_axis_];
+  cycle_move(MoveKind::rapid, back, 0);
+}
+
+/// Cycles 1, 2 and 17: the tool stands at the clearance above the surface.
+void Klartext::drill_old() {
+  const double unit = unit_mm();
+  const auto value = [&](int part) {
+    const auto found = cycle_.values.find(part);
+    if (found == cycle_.values.end())
+      throw FormulaError(cycle_.offset, "cycle",
+                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
+    return found->second;
+  };
+  Hole h;
+  h.clearance_mm = std::abs(value(1)) * unit;
+  h.surface_mm = programmed()[tool_axis_] - h.clearance_mm;
+  h.depth_mm = value(2) * unit;
+  const auto feed = [&](int part) {
+    const auto found = cycle_.feeds.find(part);
+    return found != cycle_.feeds.end() ? found->second : feed_.value_or(0);
+  };
+  if (cycle_.number == 1) {
+    h.peck_mm = std::abs(value(3)) * unit;
+    h.dwell_s = cycle_.values.contains(4) ? value(4) : 0;
+    h.feed_mm_per_s = feed(5);
+    cycle_g_ = h.peck_mm < -h.depth_mm ? 83 : 81;
+  } else if (cycle_.number == 2) {
+    h.dwell_s = cycle_.values.contains(3) ? value(3) : 0;
+    h.feed_mm_per_s = feed(4);
+    h.feed_out_mm_per_s = h.feed_mm_per_s;
+    cycle_g_ = 84;
+  } else {
+    const double pitch = value(3) * unit, rpm = state_.spindle_speed_rpm;
+    if (rpm <= 0) throw FormulaError(cycle_.offset, "spindle-speed", "tapping without a spindle speed; S was expected");
+    h.feed_mm_per_s = std::abs(pitch) * rpm / 60;
+    h.feed_out_mm_per_s = h.feed_mm_per_s;
+    cycle_g_ = pitch < 0 ? 74 : 84;
+  }
+  drill_hole(h);
+}
+
+/// A circle or helix about `centre` from where the tool stands.
+void Klartext::cycle_circle(const Vec3& centre, double sweep_rad, double end_height_mm, double feed_mm_per_s) {
+  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+  const Vec3 start = programmed();
+  Arc arc;
+  arc.normal = normal_of(plane_of_axis(tool_axis_));
+  arc.center_mm = centre;
+  arc.center_mm[axes.normal] = start[axes.normal];
+  arc.sweep_rad = sweep_rad;
+  const double x = start[axes.first] - centre[axes.first], y = start[axes.second] - centre[axes.second];
+  Vec3 end = start;
+  const double turn = std::fmod(sweep_rad, 2 * kPi);
+  if (std::abs(turn) > 1e-12) {
+    end[axes.first] = centre[axes.first] + std::cos(turn) * x - std::sin(turn) * y;
+    end[axes.second] = centre[axes.second] + std::sin(turn) * x + std::cos(turn) * y;
+  }
+  end[axes.normal] = end_height_mm;
+  const auto in_moves = frame_.plain ? std::optional(arc) : from_program(frame_, arc);
+  if (!in_moves) throw FormulaError(cycle_.offset, "scaling", "a circle of a cycle under a scale of single axes is an ellipse");
+  out_.arcs.push_back(*in_moves);
+  Move& move = add_move(MoveKind::arc, end_in_moves(end, 7));
+  move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
+  move.canned = true;
+  move.editable = false;
+  move.feed_mm_per_s = feed_mm_per_s;
+  ++cycle_moves_;
+}
+
+/// Cycle 208: a helix down to the depth, a full circle, back to the middle.
+void Klartext::mill_bore() {
+  const double unit = unit_mm();
+  const double surface = q_if_set(203).value_or(0) * unit, top = surface + q(200) * unit, bottom = surface + q(201) * unit;
+  const double feed = feed_q(206), pitch = std::abs(q(334)) * unit, diameter = q(335) * unit;
+  const bool climb = q_if_set(351).value_or(1) >= 0;
+  const double high = std::max(top, surface + q_if_set(204).value_or(0) * unit);
+  const auto tool = tool_radius_mm();
+  if (feed <= 0 || std::isinf(feed))
+    throw FormulaError(cycle_.offset, "feed-missing", "cycle 208 has no feed; Q206 greater than zero was expected");
+  if (bottom >= top) throw FormulaError(cycle_.offset, "cycle", "the depth of cycle 208 is positive; a negative one was expected");
+  prepare_cutting("a cycle", 0);
+  if (!tool)
+    warn(cycle_.offset, "radius-unknown",
+         fmt::format("cycle 208 needs the radius of tool {}, which nothing gives (TOOL DEF with R); its helix is read as a "
+                     "plunge at its middle",
+                     state_.tool),
+         "cycle 208");
+  const double radius = tool ? 0.5 * diameter - *tool : 0;
+  if (tool && radius < 0)
+    throw FormulaError(cycle_.offset, "cycle",
+                       fmt::format("the hole of cycle 208 ({:.4f} mm) is smaller than the tool ({:.4f} mm)", diameter, 2 * *tool));
+  const Vec3 middle = programmed();
+  const auto go = [&](MoveKind kind, double height) {
+    Vec3 end = programmed();
+    end[tool_axis_] = height;
+    cycle_move(kind, end, feed);
+  };
+  go(MoveKind::rapid, top);
+  if (radius > 1e-6) {
+    Vec3 beside = programmed();
+    beside[axes_of(plane_of_axis(tool_axis_)).first] += radius;
+    cycle_move(MoveKind::linear, beside, feed);
+    const double turns = pitch > 0 ? (top - bottom) / pitch : 1;
+    if (turns > kMaxPecks) throw FormulaError(cycle_.offset, "cycle", "cycle 208 would make more than 100000 turns; a larger Q334 was expected");
+    const double sense = climb ? 1 : -1;
+    cycle_circle(middle, sense * 2 * kPi * turns, bottom, feed);
+    cycle_circle(middle, sense * 2 * kPi, bottom, feed);
+    Vec3 back = middle;
+    back[tool_axis_] = bottom;
+    cycle_move(MoveKind::linear, back, feed);
+  } else {
+    go(MoveKind::linear, bottom);
+  }
+  go(MoveKind::rapid, high);
+}
+
+/// Cycles 4 and 5: a pocket from its middle outwards, in depths. The tool stands at the clearance above the middle.
+void Klartext::mill_old_pocket() {
+  const double unit = unit_mm();
+  const bool round = cycle_.number == 5;
+  const auto tool = tool_radius_mm();
+  if (!tool || *tool <= 0)
+    throw FormulaError(cycle_.offset, "radius-unknown",
+                       fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
+                                   "with R, or the finished path, was expected",
+                                   cycle_.number, state_.tool, state_.tool));
+  const auto value = [&](int part) {
+    const auto found = cycle_.values.find(part);
+    if (found == cycle_.values.end())
+      throw FormulaError(cycle_.offset, "cycle",
+                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
+    return found->second * unit;
+  };
+  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+  const double clearance = std::abs(value(1)), depth = std::abs(value(2)), step = std::abs(value(3));
+  const double plunge = cycle_.feeds.contains(3) ? cycle_.feeds[3] : feed_.value_or(0);
+  const int feed_part = round ? 5 : 6;
+  const double feed = cycle_.feeds.contains(feed_part) ? cycle_.feeds[feed_part] : feed_.value_or(0);
+  if (plunge <= 0 || feed <= 0) throw FormulaError(cycle_.offset, "feed-missing", "the pocket has no feed; F was expected in its parts");
+  if (step <= 0) throw FormulaError(cycle_.offset, "cycle", "the pocket has no depth of each cut; its part 3 was expected");
+  const double half_x = round ? value(4) - *tool : 0.5 * std::abs(value(4)) - *tool;
+  const double half_y = round ? half_x : 0.5 * std::abs(value(5)) - *tool;
+  if (half_x < -1e-9 || half_y < -1e-9)
+    throw FormulaError(cycle_.offset, "cycle", "the pocket is smaller than the tool");
+  constexpr double kOverlap = 1.4;  // of the radius: MP7430
+  const double sideways = kOverlap * *tool;
+  const double surface = programmed()[axes.normal] - clearance, sense = cycle_.sense;
+  const Vec3 middle = programmed();
+  prepare_cutting("a cycle", 0);
+  const auto at = [&](double x, double y, double z) {
+    Vec3 p = middle;
+    p[axes.first] += x;
+    p[axes.second] += y;
+    p[axes.normal] = z;
+    return p;
+  };
+  for (double z = surface; z > surface - depth + 1e-9;) {
+    z = std::max(z - step, surface - depth);
+    cycle_move(MoveKind::linear, at(0, 0, z), plunge);
+    const int rings = static_cast<int>(std::ceil(std::max(1e-9, round ? half_x : std::min(half_x, half_y)) / sideways));
+    for (int i = 1; i <= rings; ++i) {
+      const double away = (round ? half_x : std::min(half_x, half_y)) * i / rings;
+      if (away < 1e-6) break;
+      if (round) {
+        cycle_move(MoveKind::linear, at(away, 0, z), feed);
+        cycle_circle(middle, sense * 2 * kPi, z, feed);
+        continue;
+      }
+      const double x = half_x - (std::min(half_x, half_y) - away), y = half_y - (std::min(half_x, half_y) - away);
+      cycle_move(MoveKind::linear, at(x, 0, z), feed);
+      const double first = sense > 0 ? y : -y;
+      cycle_move(MoveKind::linear, at(x, first, z), feed);
+      cycle_move(MoveKind::linear, at(-x, first, z), feed);
+      cycle_move(MoveKind::linear, at(-x, -first, z), feed);
+      cycle_move(MoveKind::linear, at(x, -first, z), feed);
+      cycle_move(MoveKind::linear, at(x, 0, z), feed);
+    }
+    cycle_move(MoveKind::linear, at(0, 0, z), feed);
+  }
+  cycle_move(MoveKind::rapid, middle, 0);
+}
+
+// --- patterns
+
+/// Cycles 220 (circle) and 221 (rows): the last cycle at each place, at once.
+void Klartext::run_pattern(int number) {
+  cycle_.offset = statement_->begin;
+  if (cycle_.number < 0)
+    return error(statement_->begin, "cycle", fmt::format("cycle {} repeats a cycle and none is defined; CYCL DEF was expected before", number));
+  const double unit = unit_mm();
+  const double surface = q_if_set(203).value_or(0) * unit, clearance = q(200) * unit;
+  const double second = q_if_set(204).value_or(0) * unit;
+  const bool high = q_if_set(301).value_or(1) != 0;
+  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+  std::vector<Vec2> places;
+  const auto count_of = [&](int parameter) {
+    const double count = q(parameter);
+    if (count < 1 || count > 100000)
+      throw FormulaError(statement_->begin, "cycle", fmt::format("Q{} is {}; a number of holes was expected", parameter, count));
+    return static_cast<int>(std::lround(count));
+  };
+  if (number == 220) {
+    const Vec2 middle(q(216) * unit, q(217) * unit);
+    const int count = count_of(241);
+    const double radius = 0.5 * q(244) * unit, first = q(245), last = q_if_set(246).value_or(360);
+    double angle = q_if_set(247).value_or(0);
+    if (angle == 0) {
+      const double all = last - first;
+      const bool whole = std::abs(std::abs(all) - 360) < 1e-9;
+      angle = count > 1 ? all / (whole ? count : count - 1) : 0;
+    }
+    for (int i = 0; i < count; ++i) {
+      const double a = rad_from_deg(first + i * angle);
+      places.push_back(middle + radius * Vec2(std::cos(a), std::sin(a)));
+    }
+  } else {
+    const Vec2 start(q(225) * unit, q(226) * unit);
+    const double dx = q(237) * unit, dy = q(238) * unit, turn = rad_from_deg(q_if_set(224).value_or(0));
+    const int columns = count_of(242), rows = count_of(243);
+    for (int row = 0; row < rows; ++row)
+      for (int i = 0; i < columns; ++i) {
+        const int column = row % 2 == 0 ? i : columns - 1 - i;
+        const Vec2 p(column * dx, row * dy);
+        places.push_back(start + Vec2(std::cos(turn) * p.x() - std::sin(turn) * p.y(), std::sin(turn) * p.x() + std::cos(turn) * p.y()));
+      }
+  }
+  const bool editable = std::exchange(editable_, false);
+  const double above = surface + std::max(clearance, second), low = surface + clearance;
+  bool first = true;
+  for (const Vec2& place : places) {
+    Vec3 up = programmed();
+    up[axes.normal] = first ? std::max(up[axes.normal], above) : high ? above : low;
+    cycle_move(MoveKind::rapid, up, 0);
+    Vec3 over = up;
+    over[axes.first] = place.x();
+    over[axes.second] = place.y();
+    cycle_move(MoveKind::rapid, over, 0);
+    settle(7);
+    Vec3 down = over;
+    down[axes.normal] = low;
+    cycle_move(MoveKind::rapid, down, 0);
+    call_cycle(statement_->begin);
+    first = false;
+  }
+  editable_ = editable;
+}
+
+/// PATTERN DEF POS1 (X+25 Y+33 Z+0) ROW1 (...) PAT1 (...) FRAME1 (...) CIRC1 (...) PITCHCIRC1 (...).
+void Klartext::define_pattern(const Statement& s) {
+  Cursor at = cursor(s);
+  at.accept("DEF");
+  pattern_.clear();
+  while (at.more()) {
+    const std::size_t begin = at.offset();
+    const std::string form = at.letters();
+    at.advance(form.size());
+    at.integer();
+    if (!at.accept('('))
+      throw FormulaError(begin, "cycle", fmt::format("{} in PATTERN DEF; POS1 (X Y Z) was expected", at.word()));
+    std::map<std::string, double> values;
+    while (at.more() && at.peek() != ')') {
+      const std::size_t here = at.offset();
+      const std::string word = at.letters();
+      if (word.empty()) throw FormulaError(here, "cycle", fmt::format("{} in PATTERN DEF; X, Y or Z was expected", at.word()));
+      at.advance(word.size());
+      values[word] = known(read_value(at, parameters_), here);
+    }
+    if (!at.accept(')')) throw FormulaError(begin, "cycle", "the bracket ( of PATTERN DEF is not closed");
+    const auto value = [&](const char* name) {
+      const auto found = values.find(name);
+      return found == values.end() ? 0.0 : found->second;
+    };
+    const double unit = unit_mm();
+    const Vec2 start = Vec2(value("X"), value("Y")) * unit;
+    const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+    const auto add = [&](const Vec2& p) {
+      Vec3 place = Vec3::Zero();
+      place[axes.first] = p.x();
+      place[axes.second] = p.y();
+      place[axes.normal] = value("Z") * unit;
+      pattern_.push_back(place);
+    };
+    const auto turned = [](const Vec2& p, double degrees) {
+      const double a = rad_from_deg(degrees);
+      return Vec2(std::cos(a) * p.x() - std::sin(a) * p.y(), std::sin(a) * p.x() + std::cos(a) * p.y());
+    };
+    const auto count = [&](const char* name) {
+      const double n = value(name);
+      if (n < 1 || n > 100000) throw FormulaError(begin, "cycle", fmt::format("{} of PATTERN DEF is {}; a number of places was expected", name, n));
+      return static_cast<int>(std::lround(n));
+    };
+    if (form == "POS") {
+      add(start);
+    } else if (form == "ROW") {
+      for (int i = 0, n = count("NUM"); i < n; ++i) add(start + turned(Vec2(i * value("D") * unit, 0), value("ROT")));
+    } else if (form == "PAT" || form == "FRAME") {
+      const int columns = count("NUMX"), rows = count("NUMY");
+      for (int row = 0; row < rows; ++row)
+        for (int i = 0; i < columns; ++i) {
+          const int column = row % 2 == 0 ? i : columns - 1 - i;
+          if (form == "FRAME" && row > 0 && row + 1 < rows && column > 0 && column + 1 < columns) continue;
+          const Vec2 along = turned(Vec2(column * value("DX") * unit, 0), value("ROTX"));
+          const Vec2 across = turned(Vec2(0, row * value("DY") * unit), value("ROTY"));
+          add(start + turned(along + across, value("ROT")));
+        }
+    } else if (form == "CIRC" || form == "PITCHCIRC") {
+      const int n = count("NUM");
+      const double step = form == "CIRC" ? 360.0 / n : value("STEP");
+      for (int i = 0; i < n; ++i) add(start + turned(Vec2(0.5 * value("D") * unit, 0), value("START") + i * step));
+    } else {
+      throw FormulaError(begin, "not-supported",
+                         fmt::format("{} in PATTERN DEF is not supported; POS, ROW, PAT, FRAME, CIRC or PITCHCIRC was expected", form));
+    }
+    if (pattern_.size() > 1'000'000) throw FormulaError(begin, "cycle", "a pattern of more than a million places");
+  }
+}
+
+}  // namespace camber::nc::heidenhain

@@ -1,0 +1,71 @@
+#include "nc/heidenhain/heidenhain_language.h"
+
+#include <algorithm>
+#include <array>
+
+#include "nc/heidenhain/cursor.h"
+#include "nc/heidenhain/reader.h"
+
+namespace camber::nc::heidenhain {
+namespace {
+
+constexpr std::size_t kLines = 400;  ///< looked at
+
+/// What begins a line in Klartext and in no other language.
+constexpr std::array<std::string_view, 14> kPairs{"BEGIN PGM", "END PGM",   "BLK FORM",     "TOOL CALL", "TOOL DEF",
+                                                  "CYCL DEF",  "CYCL CALL", "CYCLE DEF",    "CALL LBL",  "CALL PGM",
+                                                  "SEL PGM",   "TCH PROBE", "FUNCTION TCPM", "PLANE RESET"};
+constexpr std::array<std::string_view, 11> kWords{"L", "LP", "LN", "CC", "CP", "CR", "CT", "RND", "CHF", "APPR", "DEP"};
+
+/// The words that show it; empty: none.
+std::string shown_by(std::string_view text, std::size_t at, std::size_t end) {
+  Cursor cursor(text, at, end);
+  if (!cursor.more()) return {};
+  if (is_digit(cursor.peek())) cursor.integer();
+  if (cursor.peek() == 'N' && is_digit(cursor.behind(1))) {
+    cursor.advance();
+    cursor.integer();
+  }
+  const std::string first = cursor.letters();
+  if (first.empty()) return {};
+  cursor.advance(first.size());
+  if (first == "LBL" && (is_digit(cursor.peek()) || cursor.peek() == '"')) return first;
+  if (first == "FN" && is_digit(cursor.peek())) {
+    cursor.integer();
+    return cursor.peek() == ':' ? first : std::string();
+  }
+  if (const std::string second = cursor.letters(); !second.empty()) {
+    const std::string both = first + " " + second;
+    if (std::ranges::find(kPairs, both) != kPairs.end()) return both;
+    if (first == "PLANE") return both;
+  }
+  if (std::ranges::find(kWords, first) == kWords.end()) return {};
+  // L X+5, CC Y-3, CR IX+1, LP PR+5, L M3: a blank, then an address with a number behind it.
+  const std::string address = cursor.letters();
+  const bool axis = address.size() == 1 && std::string_view("XYZABC").find(address[0]) != std::string_view::npos;
+  const bool step = address.size() == 2 && address[0] == 'I' && address[1] >= 'A';
+  const bool other = address == "M" || address == "FMAX" || address == "PR" || address == "PA" || address == "IPA" ||
+                     address == "LT" || address == "LCT" || address == "R";
+  return axis || step || other ? first : std::string();
+}
+
+}  // namespace
+
+LanguageEvidence evidence(std::string_view text) {
+  LanguageEvidence out;
+  std::size_t at = text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
+  for (std::size_t line = 0; line < kLines && at < text.size(); ++line) {
+    const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+    std::string word = shown_by(text, at, end);
+    if (!word.empty() && ++out.lines == 1) {
+      out.offset = text.find_first_not_of(" \t", at);
+      out.word = std::move(word);
+    }
+    at = end + 1;
+  }
+  return out;
+}
+
+Program read(SourceText source, Diagnostics& diagnostics) { return read_text(std::move(source), diagnostics); }
+
+}  // namespace camber::nc::heidenhain

@@ -1,0 +1,66 @@
+#pragma once
+// The languages of NC programs. A language turns a text into a Program (blocks, editable words, a tree of its own), the
+// Program into neutral moves (nc/move.h), and says how edited words are written (nc/emit/text_rules.h). Everything else
+// goes through read_program, interpret and emit and does not know which language it was. A new language is a folder of
+// its own, a row of the table in language.cpp, and a dialect in nc/dialects.h.
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/diagnostics.h"
+#include "nc/interpreter.h"
+#include "nc/language_id.h"
+#include "nc/program.h"
+
+namespace camber::nc {
+
+class TextRules;
+
+/// What in a text only this language has.
+struct LanguageEvidence {
+  std::size_t lines = 0;   ///< that show it, of the first ones of the text; 0: none
+  std::size_t offset = 0;  ///< of the first word that shows it
+  std::string word{};      ///< that word, for messages: "BEGIN PGM", "CYCLE800"
+};
+
+struct Language {
+  LanguageId id = LanguageId::iso;
+  std::string_view name;                           ///< in JSON; for all but ISO also the name of its dialect
+  std::string_view title;                          ///< "Heidenhain Klartext"
+  std::span<const std::string_view> extensions{};  ///< of files, lower case: they count where no word shows anything
+
+  LanguageEvidence (*evidence)(std::string_view text) = nullptr;  ///< null: what is nothing else
+  Program (*read)(SourceText source, Diagnostics& diagnostics) = nullptr;
+  Interpretation (*interpret)(const Program& program, const InterpreterOptions& options,
+                              Diagnostics& diagnostics) = nullptr;
+  std::unique_ptr<TextRules> (*text_rules)(const Program& program) = nullptr;
+};
+
+/// All of them; the first is ISO.
+std::span<const Language> languages();
+const Language& language_of(LanguageId id);
+inline const Language& language_of(const Program& program) { return language_of(program.language); }
+
+/// The language of a text, and why it is taken to be that.
+struct RecognizedLanguage {
+  const Language* language = nullptr;
+  std::string reason;  ///< "BEGIN PGM in line 1", "the name ends in .h"; of ISO: that no word shows another
+};
+RecognizedLanguage recognize_language(const SourceText& source);
+
+/// As read_program(source, diagnostics), in a language that is known (--dialect); not given: the one that the text
+/// shows.
+Program read_program(SourceText source, std::optional<LanguageId> language, Diagnostics& diagnostics);
+
+/// Throws InputError [not-supported] for a program in another language than ISO, which `command` does not write.
+void require_iso(const Program& program, std::string_view command);
+/// The same for a control: `machine_file` names it.
+void require_iso(const Dialect& dialect, const std::string& machine_file, std::string_view command);
+
+/// Of the dialect in the options.
+std::optional<LanguageId> language_asked_for(const InterpreterOptions& options);
+
+}  // namespace camber::nc

@@ -1,0 +1,87 @@
+// RND, RNDM, CHF, CHR: the corner with the next move.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "nc/corner_cut.h"
+#include "nc/siemens/block_runner.h"
+
+namespace camber::nc::siemens {
+
+void BlockRunner::read_corner(std::size_t moves_before) {
+  struct Kind {
+    Extra extra;
+    const char* name;
+    bool chamfer;
+  };
+  constexpr Kind kKinds[] = {{Extra::rnd, "RND", false}, {Extra::chf, "CHF", true}, {Extra::chr, "CHR", true}};
+  const bool cut = out_.moves.size() > moves_before && !out_.moves.back().canned &&
+                   (out_.moves.back().kind == MoveKind::linear || out_.moves.back().kind == MoveKind::arc);
+  for (const Kind& kind : kKinds) {
+    const Slot& slot = words_.of(kind.extra);
+    if (!slot.given) continue;
+    const std::string text = fmt::format("{}={:g}", kind.name, slot.value);
+    if (!cut) {
+      if (!request_.trouble) error(slot.offset, "corner-word", fmt::format("{} in a block without a cut; G1, G2 or G3 was expected", text));
+      continue;
+    }
+    if (slot.value < 0) {
+      error(slot.offset, "corner-word", fmt::format("{} is negative; zero or more was expected", text));
+      continue;
+    }
+    if (corner_.waits && !corner_.modal) {
+      error(slot.offset, "corner-word", fmt::format("{} and {} in one block; one of them was expected", corner_.text, text));
+      continue;
+    }
+    corner_ = {true, kind.chamfer, false, slot.value * unit_mm(), out_.moves.size() - 1, slot.offset, text};
+    // CHF: the length of the chamfer; known when the angle is: see put_corner
+    if (kind.extra == Extra::chf) corner_.text = text;
+  }
+  if (modal_rounding_mm_ > 0 && cut && !corner_.waits)
+    corner_ = {true, false, true, modal_rounding_mm_, out_.moves.size() - 1, words_.offset(), fmt::format("RNDM={:g}", modal_rounding_mm_ / unit_mm())};
+}
+
+void BlockRunner::finish_corner(std::size_t moves_before) {
+  if (!corner_.waits) return;
+  std::size_t next = moves_before;
+  while (next < out_.moves.size() && out_.moves[next].kind == MoveKind::dwell) ++next;
+  if (next == out_.moves.size()) return;
+  const Corner corner = std::exchange(corner_, {});
+  if (corner.move >= moves_before) return;
+  put_corner(corner, corner.move, next);
+}
+
+void BlockRunner::put_corner(const Corner& corner, std::size_t before, std::size_t after) {
+  const auto fail = [&](std::string message) { error(corner.offset, "corner-word", std::move(message)); };
+  Move &a = out_.moves[before], &b = out_.moves[after];
+  const bool cuts = (b.kind == MoveKind::linear || b.kind == MoveKind::arc) && !b.canned && !b.reference;
+  const bool same_plane = out_.frame_of(b) == out_.frame_of(a) && out_.state_of(a).plane_g == out_.state_of(b).plane_g;
+  const Frame& frame = out_.frame_of(a);
+  const int normal = axes_of(plane_).normal;
+  const auto leaves = [&](const Move& m) { return std::abs((frame.to_program(m.end_mm) - frame.to_program(m.start_mm))[normal]) > 1e-9; };
+  const auto still = [&](const Move& m) { return (m.end_mm - m.start_mm).norm() < 1e-9 && m.arc == Move::kNoArc; };
+  if (corner.modal && (!cuts || !same_plane || leaves(a) || leaves(b) || still(a) || still(b))) return;  // RNDM rounds where it can
+  a.editable = b.editable = a.end_fixed = b.end_fixed = false;
+  if (!cuts || leaving_ || !std::ranges::all_of(out_.rotary, [&](const RotaryTarget& t) { return t.move < before; }))
+    return fail(fmt::format("{} is not followed by a line or an arc of its kind; G1, G2 or G3 in the plane was expected", corner.text));
+  if (state_.feed_mode == FeedMode::inverse_time) return fail(fmt::format("{} in inverse time (G93) is not supported", corner.text));
+  if (!same_plane) return fail(fmt::format("{} before a block in another plane or frame; the same was expected", corner.text));
+  double size_mm = corner.size_mm;
+  if (corner.chamfer && corner.text.starts_with("CHF")) {
+    // The length of the chamfer of two lines that enclose an angle: 2 * distance * sin(half the angle).
+    const Vec3 in = direction_at(out_, a, 1), out = direction_at(out_, b, 0);
+    const double half = 0.5 * (kPi - std::acos(std::clamp(in.dot(out), -1.0, 1.0)));
+    if (std::sin(half) > 1e-9) size_mm = size_mm / (2 * std::sin(half));
+  }
+  const CornerCutResult cut = cut_corner(
+      out_, {before, after, plane_, fmt::format("G{}", state_.plane_g), corner.chamfer, size_mm, corner.text});
+  if (!cut.error.empty()) return fail(cut.error);
+  if (!cut.between) return;
+  out_.moves.insert(out_.moves.begin() + static_cast<std::ptrdiff_t>(after), *cut.between);
+  for (auto e = out_.events.rbegin(); e != out_.events.rend() && e->before_move >= after; ++e) ++e->before_move;
+  if (radius_.active && radius_.first_move >= after) ++radius_.first_move;
+}
+
+}  // namespace camber::nc::siemens

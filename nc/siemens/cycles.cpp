@@ -1,0 +1,402 @@
+// Cycles as moves. Parameters as in "Programming cycles externally" (Programming Manual, Work Preparation).
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "nc/frames.h"
+#include "nc/siemens/block_runner.h"
+
+namespace camber::nc::siemens {
+namespace {
+
+/// Pitches of metric coarse threads by their nominal diameter (ISO 261): MPIT.
+double coarse_pitch(double nominal_mm) {
+  constexpr std::pair<double, double> kPitches[] = {{3, 0.5}, {4, 0.7}, {5, 0.8}, {6, 1}, {8, 1.25}, {10, 1.5}, {12, 1.75}, {14, 2},
+                                                    {16, 2}, {18, 2.5}, {20, 2.5}, {22, 2.5}, {24, 3}, {27, 3}, {30, 3.5}, {33, 3.5},
+                                                    {36, 4}, {39, 4}, {42, 4.5}, {45, 4.5}, {48, 5}};
+  for (const auto& [nominal, pitch] : kPitches)
+    if (std::abs(nominal - nominal_mm) < 1e-9) return pitch;
+  return 0;
+}
+
+int number_of(const WordRow& row) {
+  int out = 0;
+  for (const char c : row.name)
+    if (c >= '0' && c <= '9') out = out * 10 + (c - '0');
+  return out;
+}
+
+/// The G number under which other controls know the cycle: what kind of hole it makes.
+int hole_of(int cycle) { return cycle == 840 ? 84 : cycle == 88 ? 88 : cycle; }
+
+}  // namespace
+
+/// A step of a cycle, in program coordinates.
+void BlockRunner::go(CycleStep::Kind kind, const Vec3& program_mm, double feed_mm_per_s, int g) {
+  if (kind != CycleStep::Kind::dwell && (program_mm - programmed()).cwiseAbs().maxCoeff() < 1e-9) return;
+  const MoveKind move_kind = kind == CycleStep::Kind::rapid ? MoveKind::rapid : kind == CycleStep::Kind::dwell ? MoveKind::dwell : MoveKind::linear;
+  const Vec3 before = programmed();
+  Move& move = add_move(move_kind, kind == CycleStep::Kind::dwell ? position_mm_ : frame_.from_program(program_mm));
+  ++cycle_moves_;
+  move.canned = true;
+  move.cycle = static_cast<std::uint8_t>(g);
+  if (kind == CycleStep::Kind::feed) move.feed_mm_per_s = feed_mm_per_s;
+  if (kind == CycleStep::Kind::dwell) move.dwell_s = feed_mm_per_s;
+  for (int axis = 0; axis < 3; ++axis)
+    if (program_mm[axis] != before[axis]) place_[static_cast<std::size_t>(axis)] = AxisPlace::known;
+}
+
+void BlockRunner::go_round(const Vec3& end, const Vec3& centre, double sweep_rad, double feed_mm_per_s) {
+  Arc arc;
+  arc.center_mm = centre;
+  arc.center_mm[axes_of(plane_).normal] = programmed()[axes_of(plane_).normal];
+  arc.normal = normal_of(plane_);
+  arc.sweep_rad = sweep_rad;
+  const auto in_moves = frame_.plain ? arc : from_program(frame_, arc);
+  if (!in_moves) return error(words_.offset(), "scaling", "an arc under a scale that differs along its two axes would be an ellipse; one scale for both was expected");
+  out_.arcs.push_back(*in_moves);
+  Move& move = add_move(MoveKind::arc, frame_.from_program(end));
+  ++cycle_moves_;
+  move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
+  move.canned = true;
+  move.feed_mm_per_s = feed_mm_per_s;
+}
+
+void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
+  place_of_block_ = place;
+  editable_ = false;
+  const Request kept = request_;
+  request_ = {};
+  rotary_target_.reset();
+  switch (call.row->does) {
+    case Does::drilling:
+      drill(call);
+      break;
+    case Does::thread_milling:
+      mill_thread(call);
+      break;
+    case Does::cycle800:
+      swivel(call, place);
+      break;
+    case Does::cycle832: {
+      // CYCLE832(tolerance, kind, ...): the ones of the kind are 0 (off), 1 finishing, 2 semi-finishing, 3 roughing, 4 precision.
+      const int kind = static_cast<int>(std::abs(call.number(1, call.has(0) && call.number(0) > 0 ? 1 : 0))) % 10;
+      cycle832_ = kind != 0;
+      cycle832_tolerance_mm_ = cycle832_ && call.number(0) > 0 ? call.number(0) * unit_mm() : -1;
+      set_contouring();
+      break;
+    }
+    case Does::refused:
+      set_command(*call.row, call.offset);
+      break;
+    default:
+      break;
+  }
+  request_.trouble = request_.trouble || kept.trouble;
+}
+
+/// The feed of a cycle: its own parameter, or the one that is active.
+std::optional<double> BlockRunner::cycle_feed(double given, const CycleCall& call, const char* what) {
+  if (given > 0)
+    return state_.feed_mode == FeedMode::per_revolution ? given * unit_mm() * state_.spindle_speed_rpm / 60 : mm_per_s_from_mm_per_min(given * unit_mm());
+  if (state_.feed_mode == FeedMode::inverse_time) {
+    error(call.offset, "cycle", fmt::format("{} in inverse time (G93); G94 was expected before", call.row->name));
+    return std::nullopt;
+  }
+  if (!feed_ || *feed_ == 0) {
+    error(call.offset, "feed-missing", fmt::format("{} without a feed ({}); F greater than zero was expected before", call.row->name, what), "feed");
+    return std::nullopt;
+  }
+  return cutting_feed(0, call.row->name.data());
+}
+
+/// CYCLE81 to CYCLE89 and CYCLE840 where the tool stands. RTP, RFP, SDIS, DP, DPR come first in all of them.
+void BlockRunner::drill(const CycleCall& call) {
+  const int cycle = number_of(*call.row), g = hole_of(cycle);
+  const std::string name = name_of(call);
+  check_unit();
+  const int normal = axes_of(plane_).normal;
+  const auto of_normal = static_cast<std::uint8_t>(1U << static_cast<unsigned>(normal));
+  const bool height_open = open_axes_ == of_normal;  // the way to the reference plane gives it
+  if (height_open)
+    open_axes_ = 0;
+  else
+    settle_axes_for(name.c_str(), false);
+  prepare_cutting(name.c_str());
+  if (radius_.active && radius_.radius_mm != 0) return error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
+  if (!call.has(0)) return error(call.offset, "cycle", fmt::format("{} has no retraction plane; RTP, its first value, was expected", name), name + " RTP");
+  const double unit = unit_mm();
+  const double reference = call.number(1) * unit, level = reference + std::abs(call.number(2)) * unit;
+  const double rtp = call.number(0) * unit;
+  const bool by_dpr = call.has(4) && (call.number(4) != 0 || !call.has(3));
+  if (!by_dpr && !call.has(3)) return error(call.offset, "cycle", fmt::format("{} has no depth; DP or DPR, its fourth or fifth value, was expected", name), name + " DP");
+  const double bottom = by_dpr ? reference - std::abs(call.number(4)) * unit : call.number(3) * unit;
+  if (bottom > level)
+    return error(call.offset, "cycle", fmt::format("the bottom of {} at {:.4f} mm is above its reference plane with safety clearance, {:.4f} mm", name, bottom, level));
+  if (cycle == 81 && static_cast<int>(call.number(6)) / 10 % 10 == 1)
+    return error(call.offset, "not-supported", "CYCLE81 by the diameter of the centring is not supported; a depth was expected");
+  if (cycle_moves_ > kMaxCycleMoves) return error(call.offset, "cycle", fmt::format("the cycles make more than {} moves", kMaxCycleMoves), "cycle moves");
+  const auto at = [&](double height) {
+    Vec3 p = programmed();
+    p[normal] = height;
+    return p;
+  };
+  const auto rapid = [&](double height) { go(CycleStep::Kind::rapid, at(height), 0, g); };
+  const auto feed_to = [&](double height, double feed) { go(CycleStep::Kind::feed, at(height), feed, g); };
+  const auto wait = [&](double seconds) {
+    if (seconds < 0) seconds = state_.spindle_speed_rpm > 0 ? -seconds * 60 / state_.spindle_speed_rpm : 0;
+    if (seconds > 0) go(CycleStep::Kind::dwell, programmed(), seconds, g);
+  };
+  const bool tapping = cycle == 84 || cycle == 840;
+  std::optional<double> feed;
+  double out_feed = 0;
+  const double speed_before = state_.spindle_speed_rpm;
+  if (tapping) {
+    const std::size_t mpit = cycle == 84 ? 7 : 9, pit = cycle == 84 ? 8 : 10;
+    double pitch = std::abs(call.number(pit));
+    const int pitch_unit = cycle == 84 ? static_cast<int>(call.number(13)) : 0;
+    pitch = pitch_unit == 2 ? (pitch > 0 ? kMmPerInch / pitch : 0) : pitch_unit == 3 ? pitch * kMmPerInch : pitch * unit;
+    if (pitch == 0 && call.has(mpit)) pitch = coarse_pitch(std::abs(call.number(mpit)));
+    const double speed = cycle == 84 && call.number(10) > 0 ? call.number(10) : state_.spindle_speed_rpm;
+    if (pitch > 0 && speed > 0) {
+      feed = pitch * speed / 60;
+      const double back = cycle == 84 && call.number(11) > 0 ? call.number(11) : speed;
+      out_feed = pitch * back / 60;
+      if (cycle == 84 && speed != state_.spindle_speed_rpm) {
+        state_.spindle_speed_rpm = speed;
+        change_state();
+      }
+    } else if (pitch == 0) {
+      if (cycle == 84)
+        report_.warning(call.offset, "cycle", "CYCLE84 has no pitch (PIT or MPIT), which the control refuses; the active F is taken", "CYCLE84 pitch");
+      feed = cycle_feed(0, call, "F");
+      out_feed = feed.value_or(0);
+    } else {
+      return error(call.offset, "cycle", fmt::format("{} has no speed; SST or S was expected", name), name);
+    }
+  } else {
+    feed = cycle_feed(cycle == 85 ? call.number(6) : 0, call, "F");
+  }
+  if (!feed) return;
+  if (height_open && std::abs(programmed()[normal] - level) < 1e-9) position_mm_ = frame_.from_program(at(level + 1));
+  rapid(level);
+  switch (cycle) {
+    case 83: {
+      const double first_depth = call.has(6) && call.number(6) > 0 ? reference - call.number(6) * unit : call.has(5) ? call.number(5) * unit : bottom;
+      const int amode = static_cast<int>(call.number(19));
+      const double dam = call.number(7), least = call.number(13) * unit;
+      const bool percent = amode / 100000 % 10 == 2;
+      const double factor = percent ? dam / 100 : dam < 0 ? -dam : 1;
+      double frf = call.number(10, 1);
+      if (frf > 1) frf /= 100;
+      if (!(frf > 0)) frf = 1;
+      const bool removes = static_cast<int>(call.number(11)) != 0;
+      const double chip_retract = call.number(14) > 0 ? call.number(14) * unit : 1.0;
+      const double hole = reference - bottom;
+      const double ahead = call.number(16) > 0 ? call.number(16) * unit : hole <= 30 ? 0.6 : std::min(hole / 50, 7.0);
+      double depth = std::clamp(first_depth, bottom, level), stroke = reference - depth;
+      if (!(stroke > 1e-6)) stroke = std::max(level - depth, 1e-3);
+      if (hole / std::max(std::min(stroke, least > 0 ? least : stroke), 1e-9) > kMaxPecks)
+        return error(call.offset, "cycle", "CYCLE83 would peck more than 100000 times; a larger first depth was expected");
+      feed_to(depth, *feed * frf);
+      while (depth > bottom + 1e-9) {
+        wait(call.number(8));
+        if (removes) {
+          rapid(level);
+          wait(call.number(9));
+          rapid(std::min(depth + ahead, level));
+        } else {
+          rapid(std::min(depth + chip_retract, level));
+        }
+        if (percent || dam < 0) {
+          stroke = std::max(stroke * std::clamp(factor, 0.001, 1.0), least > 0 ? least : 0.01 * unit);
+        } else if (dam > 0) {
+          const double amount = dam * unit, rest = depth - bottom;
+          stroke = std::max(stroke - amount > amount ? stroke - amount : amount, least);
+          if (stroke <= amount && rest < 2 * amount && rest > amount) stroke = rest / 2;
+        }
+        depth = std::max(depth - stroke, bottom);
+        feed_to(depth, *feed);
+        if (cycle_moves_ > kMaxCycleMoves) break;
+      }
+      wait(call.has(15) ? call.number(15) : 0);
+      rapid(rtp);
+      return;
+    }
+    case 84:
+    case 840:
+      feed_to(bottom, *feed);
+      wait(call.number(5));
+      feed_to(level, out_feed);
+      if (state_.spindle_speed_rpm != speed_before) {
+        state_.spindle_speed_rpm = speed_before;
+        change_state();
+      }
+      rapid(rtp);
+      return;
+    case 85: {
+      feed_to(bottom, *feed);
+      wait(call.number(5));
+      const auto back = cycle_feed(call.number(7), call, "RFF");
+      feed_to(level, back.value_or(*feed));
+      rapid(rtp);
+      return;
+    }
+    case 86: {
+      feed_to(bottom, *feed);
+      wait(call.number(5));
+      const PlaneAxes axes = axes_of(plane_);
+      const Vec3 hole = programmed();
+      Vec3 off = hole;
+      off[axes.first] += call.number(7) * unit;
+      off[axes.second] += call.number(8) * unit;
+      off[normal] += call.number(9) * unit;
+      go(CycleStep::Kind::rapid, off, 0, 76);
+      off[normal] = std::max(level, off[normal]);
+      go(CycleStep::Kind::rapid, off, 0, 76);
+      Vec3 end = hole;
+      end[normal] = rtp;
+      go(CycleStep::Kind::rapid, end, 0, 76);
+      return;
+    }
+    case 89:
+      feed_to(bottom, *feed);
+      wait(call.number(5));
+      feed_to(level, *feed);
+      rapid(rtp);
+      return;
+    default:  // 81, 82, 87, 88
+      feed_to(bottom, *feed);
+      if (cycle == 82 || cycle == 88 || (cycle == 81 && call.values.size() > 6)) wait(call.number(5));
+      rapid(rtp);
+      return;
+  }
+}
+
+/// CYCLE90: a helix on the thread's diameter, less or more the tool's radius, with semicircles in and out.
+void BlockRunner::mill_thread(const CycleCall& call) {
+  const std::string name = name_of(call);
+  check_unit();
+  prepare_cutting(name.c_str());
+  if (radius_.active && radius_.radius_mm != 0) return error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
+  const double unit = unit_mm();
+  const double rtp = call.number(0) * unit, reference = call.number(1) * unit, level = reference + std::abs(call.number(2)) * unit;
+  const bool by_dpr = call.has(4) && (call.number(4) != 0 || !call.has(3));
+  const double bottom = by_dpr ? reference - std::abs(call.number(4)) * unit : call.number(3) * unit;
+  const double pitch = std::abs(call.number(7)) * unit, nominal = call.number(5) * unit, core = call.number(6) * unit;
+  const bool outside = call.number(10) == 1, clockwise = call.number(9) == 2;
+  if (!(pitch > 0) || !(nominal > 0) || !(core > 0) || bottom > level || !call.has(0))
+    return error(call.offset, "cycle", fmt::format("{} needs RTP, a depth below the reference plane, DIATH, KDIAM and PIT", name));
+  const auto feed = cycle_feed(call.number(8), call, "FFR");
+  if (!feed) return;
+  double cutter = 0;
+  if (const auto tool = tool_offsets_.find(state_.tool); tool != tool_offsets_.end() && edge_ != 0) cutter = tool->second.effective_radius_mm().value_or(0);
+  if (cutter == 0)
+    report_.warning(call.offset, "radius-unknown", fmt::format("no radius is given for tool {}; {} takes 0", state_.tool, name), name);
+  const double radius = outside ? core / 2 + cutter : nominal / 2 - cutter;
+  if (!(radius > 0)) return error(call.offset, "cycle", fmt::format("the cutter of {:.3f} mm does not go into the thread of {:.3f} mm", 2 * cutter, nominal));
+  report_.warning(call.offset, "cycle", fmt::format("the ways in and out of {} are taken as semicircles; the control's may differ", name), name + " ways");
+  const PlaneAxes axes = axes_of(plane_);
+  Vec3 centre = programmed();
+  centre[axes.first] = call.number(11) * unit;
+  centre[axes.second] = call.number(12) * unit;
+  const auto place = [&](double along, double height) {
+    Vec3 p = centre;
+    p[axes.first] += along;
+    p[axes.normal] = height;
+    return p;
+  };
+  // Inside from the centre, outside from beside the thread, both on the positive first axis.
+  const double start = outside ? radius + 2 * std::max(cutter, pitch) : 0;
+  const double sign = clockwise ? -1 : 1;
+  Vec3 over = place(start, programmed()[axes.normal]);
+  if (programmed()[axes.normal] < rtp) go(CycleStep::Kind::rapid, [&] { Vec3 p = programmed(); p[axes.normal] = rtp; return p; }(), 0, 0);
+  over[axes.normal] = programmed()[axes.normal];
+  go(CycleStep::Kind::rapid, over, 0, 0);
+  go(CycleStep::Kind::rapid, place(start, level), 0, 0);
+  go_round(place(radius, level), place((start + radius) / 2, level), (outside ? -sign : sign) * kPi, *feed);
+  const double turns = (level - bottom) / pitch, sweep = sign * 2 * kPi * turns;
+  if (turns > 1000) return error(call.offset, "cycle", fmt::format("{} would make {:.0f} turns; a larger PIT was expected", name, turns));
+  Vec3 end = place(0, bottom);
+  end[axes.first] += radius * std::cos(sweep);
+  end[axes.second] += radius * std::sin(sweep);
+  go_round(end, centre, sweep, *feed);
+  const double out_by = outside ? start - radius : -radius;
+  const Vec3 direction = (end - place(0, bottom)) / radius;
+  Vec3 off = end + direction * out_by, middle = end + direction * (out_by / 2);
+  go_round(off, middle, (outside ? -sign : sign) * kPi, *feed);
+  off[axes.normal] = rtp;
+  go(CycleStep::Kind::rapid, off, 0, 0);
+}
+
+/// HOLES1, HOLES2, CYCLE801, CYCLE802: a rapid to each place.
+void BlockRunner::run_pattern(const CycleCall& call, const BlockPlace& place, const std::function<void()>& visit) {
+  const std::string name = name_of(call);
+  const double unit = unit_mm();
+  const PlaneAxes axes = axes_of(plane_);
+  std::vector<std::pair<double, double>> places;
+  const auto count_of = [&](std::size_t i) {
+    const double n = call.number(i);
+    if (!(n >= 1 && n <= 10000)) {
+      error(call.offset, "cycle", fmt::format("{} of {:g} holes; 1 to 10000 were expected", name, n));
+      return 0;
+    }
+    return static_cast<int>(n);
+  };
+  place_of_block_ = place;
+  request_ = {};
+  words_.clear(call.offset);
+  const double x = call.number(0) * unit, y = call.number(1) * unit;
+  if (name == "HOLES1") {
+    const double angle = rad_from_deg(call.number(2));
+    const int n = count_of(5);
+    for (int i = 0; i < n; ++i) {
+      const double along = (call.number(3) + i * call.number(4)) * unit;
+      places.emplace_back(x + along * std::cos(angle), y + along * std::sin(angle));
+    }
+    const Vec3 at = programmed();
+    const auto way = [&](const auto& p) { return std::hypot(p.first - at[axes.first], p.second - at[axes.second]); };
+    if (n > 1 && way(places.back()) < way(places.front())) std::ranges::reverse(places);
+  } else if (name == "HOLES2") {
+    const int n = count_of(5);
+    const double step = call.number(4) != 0 ? call.number(4) : n > 0 ? 360.0 / n : 0;
+    for (int i = 0; i < n; ++i) {
+      const Eigen::Matrix3d turn = rotation_in(Plane::xy, rad_from_deg(call.number(3) + i * step));
+      places.emplace_back(x + turn(0, 0) * call.number(2) * unit, y + turn(1, 0) * call.number(2) * unit);
+    }
+  } else if (name == "CYCLE801") {
+    const double angle = rad_from_deg(call.number(2));
+    const int columns = count_of(5), rows = count_of(6);
+    const bool frame_only = static_cast<int>(call.number(7)) % 10 == 1;
+    for (int r = 0; r < rows; ++r)
+      for (int k = 0; k < columns; ++k) {
+        const int c = r % 2 == 0 ? k : columns - 1 - k;
+        if (frame_only && r > 0 && r + 1 < rows && c > 0 && c + 1 < columns) continue;
+        const double u = c * call.number(3) * unit, v = r * call.number(4) * unit;
+        places.emplace_back(x + u * std::cos(angle) - v * std::sin(angle), y + u * std::sin(angle) + v * std::cos(angle));
+      }
+  } else {
+    const std::string masks = fmt::format("{:.0f}{:.0f}", call.number(0), call.number(1));
+    if (masks.find('2') != std::string::npos)
+      return error(call.offset, "not-supported", "CYCLE802 with incremental places is not supported; absolute ones were expected");
+    for (std::size_t i = 2; i + 1 < call.values.size() && i < 20; i += 2)
+      if (call.has(i) || call.has(i + 1)) places.emplace_back(call.number(i) * unit, call.number(i + 1) * unit);
+  }
+  check_unit();
+  for (const auto& [u, v] : places) {
+    place_of_block_ = place;
+    editable_ = false;
+    request_ = {};
+    Vec3 to = programmed();
+    to[axes.first] = u;
+    to[axes.second] = v;
+    place_[static_cast<std::size_t>(axes.first)] = place_[static_cast<std::size_t>(axes.second)] = AxisPlace::known;
+    if ((to - programmed()).norm() > 1e-9) add_move(MoveKind::rapid, frame_.from_program(to));
+    visit();
+    if (report_.full()) return;
+  }
+}
+
+}  // namespace camber::nc::siemens

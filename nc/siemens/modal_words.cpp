@@ -1,0 +1,576 @@
+// Words that change the state of the control.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "nc/siemens/block_runner.h"
+
+namespace camber::nc::siemens {
+
+BlockRunner::BlockRunner(const Program& program, const InterpreterOptions& options, Reporter& report,
+                         Interpretation& out)
+    : main_(&program),
+      program_(&program),
+      options_(options),
+      report_(report),
+      out_(out),
+      offsets_(options.work_offsets_mm),
+      tool_offsets_(options.tool_offsets) {
+  for (const auto& [number, angles] : options.rotary_offsets_rad) offsets_.at(number).rotary_rad = angles;
+  start_open_ = !options.rotary_axes.empty();
+  state_.inch = options.inch.value_or(false);
+  unit_given_ = options.inch.has_value();
+  for (const auto& [number, offset] : options.tool_offsets) tools_.reserve(number);
+  for (const Word& w : program.words)
+    if (w.letter == 'T' && w.value >= 0 && w.value < 1e6) tools_.reserve(static_cast<int>(w.value));
+  update_frame();
+}
+
+void BlockRunner::error(std::size_t offset, std::string_view check, std::string message, std::string_view alike) {
+  request_.trouble = true;
+  report_.error(offset, check, std::move(message), alike);
+}
+
+void BlockRunner::begin(const BlockPlace& place) {
+  place_of_block_ = place;
+  program_ = place.file;
+  editable_ = place.editable;
+  request_ = {};
+  words_.clear(program_->offset_of(place.block));
+}
+
+void BlockRunner::add_plain(std::span<const Word> words) {
+  for (const Word& w : words) {
+    if (w.letter == 'N') continue;
+    if (w.letter == 'G' || w.letter == 'M') {
+      const int number = w.value >= 0 && w.value < 1e6 && w.value == std::floor(w.value) ? static_cast<int>(w.value) : -1;
+      (w.letter == 'G' ? words_.g : words_.m).push_back({number, w.offset, 1, w.value});
+      continue;
+    }
+    Slot& slot = w.letter == 'R' ? words_.set(Extra::cr) : words_.set(w.letter);
+    if (slot.given)
+      error(w.offset, "word-twice", fmt::format("{} twice in one block; once was expected", w.letter == 'R' ? "CR" : std::string(1, w.letter)));
+    slot = {true, false, Dimension::as_modal, w.value, w.offset};
+  }
+}
+
+void BlockRunner::set_command(const WordRow& row, std::uint32_t offset) {
+  switch (row.does) {
+    case Does::nothing:
+      return;
+    case Does::noted:
+      report_.warning(offset, "no-effect", fmt::format("{} ({}) is read without effect", row.name, row.what), row.name);
+      return;
+    case Does::refused:
+      error(offset, "not-supported",
+            fmt::format("{} ({}) is not supported; what can stand in its place: {}", row.name, row.what, row.instead),
+            row.name);
+      return;
+    case Does::supa:
+      request_.machine_frame = true;
+      return;
+    case Does::cip:
+    case Does::ct:
+      motion_ = row.does == Does::cip ? Motion::through_point : Motion::tangential;
+      request_.motion_given = true;
+      request_.motion_offset = offset;
+      return;
+    case Does::trans:
+    case Does::atrans:
+    case Does::rot:
+    case Does::arot:
+    case Does::scale:
+    case Does::ascale:
+    case Does::mirror:
+    case Does::amirror:
+      if (request_.frame)
+        error(offset, "modal-group", fmt::format("{} and {} in one block; one of them was expected", request_.frame->name, row.name));
+      request_.frame = &row;
+      request_.frame_offset = offset;
+      return;
+    case Does::transform_on:
+      set_tip_control(TipControl::angles, "TRAORI", offset);
+      return;
+    case Does::transform_off:
+      set_tip_control(TipControl::off, "TRAFOOF", offset);
+      return;
+    case Does::contour_mode:
+      compressor_ = true;
+      return set_contouring();
+    case Does::contour_mode_off:
+      compressor_ = false;
+      return set_contouring();
+    case Does::home:
+      go_home(row, offset, place_of_block_);
+      return;
+    default:
+      return;
+  }
+}
+
+void BlockRunner::set_contouring() {
+  const bool on = cycle832_ || compressor_;
+  state_.high_speed_contouring = on;
+  state_.contouring = on ? Contouring::cycle832 : Contouring::none;
+  state_.blend_tolerance_mm = blending_ == 641 ? adis_mm_ : cycle832_ && blending_ != 60 ? cycle832_tolerance_mm_ : -1;
+  change_state();
+}
+
+bool BlockRunner::execute(bool& ends_subprogram) {
+  ends_subprogram = false;
+  moved_ = false;
+  if (words_.empty() && !request_.frame && !request_.machine_frame && !request_.motion_given) return true;
+  read_g_codes();
+  if (words_.has(Extra::adis)) {
+    adis_mm_ = std::max(0.0, words_.of(Extra::adis).value * unit_mm());
+    set_contouring();
+  }
+  if (!request_.dwell && !request_.limits) {
+    read_feed();
+    read_spindle_speed();
+  }
+  read_tool();
+  if (!read_m_codes_before()) return false;
+  read_edge();
+  check_letters();
+  note_dimensions();
+  read_rotary_words();
+  const std::size_t moves_before = out_.moves.size();
+  if (request_.frame) {
+    run_frame_command();
+  } else if (request_.limits) {
+  } else if (request_.dwell) {
+    dwell();
+  } else if (request_.pole != 0) {
+    set_pole();
+  } else if (request_.fixed_point) {
+    go_to_fixed_point();
+  } else if (request_.machine_frame) {
+    go_in_machine_frame();
+  } else {
+    move();
+  }
+  finish_corner(moves_before);
+  read_corner(moves_before);
+  for (std::size_t i = moves_before; i < out_.moves.size(); ++i) moved_ |= out_.moves[i].kind != MoveKind::dwell;
+  return read_m_codes_after(ends_subprogram);
+}
+
+// --- G codes
+
+void BlockRunner::read_g_codes() {
+  // Those that others depend on first: units and dimensions.
+  for (const CodeWord& code : words_.g) {
+    const int g = code.number;
+    if (g == 70 || g == 71 || g == 700 || g == 710 || g == 20 || g == 21) {
+      state_.inch = g == 70 || g == 700 || g == 20;
+      unit_given_ = true;
+      change_state();
+      if (g == 20 || g == 21)
+        report_.warning(code.offset, "iso-word", fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read as G{}", g, g == 20 ? 700 : 710), "G20");
+      if (g == 70 && !options_.inch)
+        report_.warning(code.offset, "feed-unit",
+                        "F under G70 counts in the basic unit of the control, which is not known; inch per minute is assumed (G700 says it)",
+                        "G70");
+    } else if (g == 90 || g == 91) {
+      absolute_ = g == 90;
+    } else if (g >= 17 && g <= 19) {
+      const Plane wanted = g == 17 ? Plane::xy : g == 18 ? Plane::zx : Plane::yz;
+      if (radius_.active && radius_.radius_mm != 0 && wanted != plane_)
+        error(code.offset, "cutter-radius", fmt::format("G{} under G{}; G40 was expected before", g, radius_.g));
+      plane_ = wanted;
+      state_.plane_g = static_cast<std::uint8_t>(g);
+      change_state();
+    }
+  }
+  for (const CodeWord& code : words_.g) read_g_code(code);
+}
+
+void BlockRunner::read_g_code(const CodeWord& code) {
+  const int g = code.number;
+  const auto set_motion = [&](Motion motion) {
+    motion_ = motion;
+    request_.motion_given = true;
+    request_.motion_offset = code.offset;
+  };
+  const auto refuse = [&](std::string_view what, std::string_view instead) {
+    error(code.offset, "not-supported", fmt::format("G{} ({}) is not supported; {} was expected", g, what, instead), fmt::format("G{}", g));
+  };
+  const auto set_blending = [&](int number) {
+    blending_ = number;
+    const bool stops = number == 60;
+    state_.path_control = stops ? PathControl::exact_stop : PathControl::blend;
+    state_.path_g = stops ? 61 : 64;
+    set_contouring();
+  };
+  switch (g) {
+    case 0: return set_motion(Motion::rapid);
+    case 1: return set_motion(Motion::linear);
+    case 2: return set_motion(Motion::clockwise);
+    case 3: return set_motion(Motion::counter_clockwise);
+    case 4: request_.dwell = true; return;
+    case 9: request_.exact_stop = true; return;
+    case 17: case 18: case 19: case 20: case 21: case 70: case 71: case 700: case 710: case 90: case 91:
+      return;
+    case 25: case 26: request_.limits = true; return;
+    case 33: case 34: case 35: return refuse("thread cutting", "a tapping cycle");
+    case 331: return set_motion(Motion::tapping_in);
+    case 332: return set_motion(Motion::tapping_out);
+    case 40: return end_radius();
+    case 41: case 42: return read_radius_code(code);
+    case 53: case 153: request_.machine_frame = true; return;
+    case 58: case 59: return refuse("programmable shift", "TRANS or ATRANS");
+    case 60: case 64: return set_blending(g);
+    case 601: case 602: case 603: return;
+    case 641: case 642: case 643: case 644: case 645: case 646: return set_blending(g);
+    case 62: case 621: return;
+    case 63: return set_motion(Motion::linear);
+    case 74: case 75:
+      request_.fixed_point = true;
+      return;
+    case 93: return set_feed_mode(FeedMode::inverse_time);
+    case 94: return set_feed_mode(FeedMode::per_minute);
+    case 95: return set_feed_mode(FeedMode::per_revolution);
+    case 931: return refuse("feed by duration", "G94");
+    case 942: case 952: return set_feed_mode(g == 942 ? FeedMode::per_minute : FeedMode::per_revolution);
+    case 96: case 961: case 962: return refuse("constant cutting speed", "G97 with S");
+    case 97: case 971: case 972: case 973: return;
+    case 110: case 111: case 112: request_.pole = g; return;
+    case 140: case 141: case 142: case 143: case 340: case 341: return;
+    case 147: case 148: case 247: case 248: case 347: case 348:
+      return refuse("smooth approach and retraction", "G1 to G3");
+    case 290: return;
+    case 291: return refuse("ISO mode", "a program in ISO G code");
+    case 450: case 451: return;  // DISC: corners are arcs; G451 lines
+    case 460: case 461: case 462: return;
+    case 500: return set_work_offset(500);
+    case 810: case 811: case 812: case 813: case 814: case 815: case 816: case 817: case 818: case 819:
+    case 820: case 821: case 822: case 823: case 824: case 825: case 826: case 827: case 828: case 829:
+      return report_.warning(code.offset, "no-effect", fmt::format("G{} of the machine's maker is read without effect", g), fmt::format("G{}", g));
+    case 43: case 44: case 49: case 80:
+      words_.set('H').given = false;
+      return report_.warning(code.offset, "iso-word",
+                             fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read without effect (tool lengths come with D)", g),
+                             fmt::format("G{}", g));
+    default:
+      break;
+  }
+  if ((g >= 54 && g <= 57) || (g >= 505 && g <= 599)) return set_work_offset(g);
+  error(code.offset, "unknown-g",
+        g < 0 ? fmt::format("G{:g} is no G function; a whole number was expected", code.value)
+              : fmt::format("G{} is not a G function of a Sinumerik program that Camber knows", g),
+        fmt::format("G{}", g));
+}
+
+/// As ModalState::work_offset has them: G54 to G57 by their number, G505 to G599 as G54.1 P5 to P99, G500 as 500.
+void BlockRunner::set_work_offset(int g) {
+  const int number = g > 500 ? 540000 + g - 500 : g;
+  if (radius_.active && radius_.radius_mm != 0 && number != state_.work_offset)
+    error(words_.offset(), "cutter-radius", fmt::format("G{} under G{}; G40 was expected before", g, radius_.g));
+  if (g == 500 && !options_.work_offsets_mm.empty()) offsets_.at(500).known = true;
+  state_.work_offset = number;
+  change_state();
+  update_frame();
+}
+
+void BlockRunner::set_feed_mode(FeedMode mode) {
+  if (mode != state_.feed_mode) {
+    feed_.reset();
+    state_.feed_mode = mode;
+    change_state();
+  }
+  feed_given_ = true;
+  request_.feed_mode_given = true;
+}
+
+// --- F, S, T, D
+
+void BlockRunner::read_feed() {
+  const Slot& f = words_.of('F');
+  if (!f.given) return;
+  if (f.value < 0 || std::isnan(f.value)) {
+    error(f.offset, "feed", fmt::format("F {:g} is negative; a feed greater than zero was expected", f.value));
+    return;
+  }
+  feed_ = state_.feed_mode == FeedMode::inverse_time     ? f.value / 60
+          : state_.feed_mode == FeedMode::per_revolution ? f.value * unit_mm()
+                                                         : mm_per_s_from_mm_per_min(f.value * unit_mm());
+  feed_given_ = true;
+  feed_by_variable_ = f.by_expression;
+}
+
+void BlockRunner::read_spindle_speed() {
+  const Slot& s = words_.of('S');
+  if (!s.given) return;
+  if (s.value < 0) {
+    error(s.offset, "spindle-speed", fmt::format("S {:g} is negative; zero or more was expected", s.value));
+    return;
+  }
+  state_.programmed_spindle_speed_rpm = s.value;
+  state_.spindle_speed_rpm = std::min(s.value, options_.max_spindle_speed_rpm);
+  if (s.value > options_.max_spindle_speed_rpm)
+    report_.warning(s.offset, "spindle-speed",
+                    fmt::format("S{:g} is above the machine's largest spindle speed, {:g} rpm, at which it turns", s.value, options_.max_spindle_speed_rpm),
+                    fmt::format("S{:g}", s.value));
+  change_state();
+  add_event(EventKind::spindle_speed, s.value);
+}
+
+void BlockRunner::set_tool_name(const std::string& name, std::uint32_t offset) {
+  next_tool_ = name.empty() ? 0 : tools_.of(name);
+  tool_word_offset_ = offset;
+  out_.tool_names = tools_.names();
+  add_event(EventKind::tool_select, next_tool_);
+}
+
+void BlockRunner::read_tool() {
+  const Slot& t = words_.of('T');
+  if (!t.given) return;
+  if (t.value < 0 || t.value != std::floor(t.value) || t.value > 1e8) {
+    error(t.offset, "tool", fmt::format("T{:g} is no tool; a whole number of zero or more was expected", t.value));
+    return;
+  }
+  next_tool_ = static_cast<int>(t.value);
+  tool_word_offset_ = t.offset;
+  add_event(EventKind::tool_select, next_tool_);
+}
+
+void BlockRunner::change_tool(std::uint32_t offset) {
+  if (radius_.active && radius_.radius_mm != 0)
+    error(offset, "cutter-radius", fmt::format("a tool change under G{}; G40 was expected before", radius_.g));
+  if (next_tool_ < 0) {
+    report_.warning(offset, "tool", "M6 without a tool; T was expected before", "M6");
+    return;
+  }
+  tool_changed_ = true;
+  state_.tool = next_tool_;
+  edge_ = next_tool_ == 0 ? 0 : 1;
+  change_state();
+  update_tool_length();
+  add_event(EventKind::tool_change, next_tool_);
+}
+
+/// D: the edge of the tool, whose radius and length hold.
+void BlockRunner::read_edge() {
+  const Slot& d = words_.of('D');
+  if (!d.given) return;
+  if (d.value < 0 || d.value != std::floor(d.value) || d.value > 32000) {
+    error(d.offset, "tool", fmt::format("D{:g} is no cutting edge; a whole number of zero or more was expected", d.value));
+    return;
+  }
+  edge_ = static_cast<int>(d.value);
+  update_tool_length();
+}
+
+void BlockRunner::update_tool_length() {
+  if (options_.rotary_axes.empty()) return;
+  std::optional<double> length = 0.0;
+  if (edge_ != 0 && state_.tool != 0) {
+    length.reset();
+    const auto found = tool_offsets_.find(state_.tool);
+    if (found != tool_offsets_.end() && found->second.length_mm)
+      length = *found->second.length_mm + found->second.length_wear_mm.value_or(0);
+  }
+  if (length == state_.tool_length_mm) return;
+  state_.tool_length_mm = length;
+  change_state();
+}
+
+// --- M codes
+
+bool BlockRunner::read_m_codes_before() {
+  for (const CodeWord& code : words_.m) {
+    const bool main = code.spindle == main_spindle_;
+    switch (code.number) {
+      case 3:
+      case 4:
+        if (!main) break;
+        state_.spindle = code.number == 3 ? SpindleDirection::clockwise : SpindleDirection::counter_clockwise;
+        change_state();
+        add_event(code.number == 3 ? EventKind::spindle_clockwise : EventKind::spindle_counter_clockwise, state_.spindle_speed_rpm);
+        break;
+      case 6:
+        change_tool(code.offset);
+        break;
+      case 7:
+      case 8:
+        state_.coolant = true;
+        change_state();
+        add_event(EventKind::m_code, code.number);
+        break;
+      case 19:
+        add_event(EventKind::spindle_orient, 0);
+        break;
+      case 0: case 1: case 2: case 5: case 9: case 17: case 30:
+        break;
+      case 60:
+        add_event(EventKind::pallet, 60);
+        break;
+      default: {
+        if (code.number < 0) {
+          error(code.offset, "unknown-m", fmt::format("M{:g} is no M function; a whole number was expected", code.value));
+          break;
+        }
+        add_event(EventKind::m_code, code.number);
+        break;
+      }
+    }
+  }
+  return true;
+}
+
+bool BlockRunner::read_m_codes_after(bool& ends_subprogram) {
+  bool go_on = true;
+  for (const CodeWord& code : words_.m) {
+    switch (code.number) {
+      case 5:
+        if (code.spindle != main_spindle_) break;
+        state_.spindle = SpindleDirection::stopped;
+        change_state();
+        add_event(EventKind::spindle_stop, 0);
+        break;
+      case 9:
+        state_.coolant = false;
+        change_state();
+        add_event(EventKind::m_code, 9);
+        break;
+      case 0:
+      case 1:
+        add_event(EventKind::m_code, code.number);
+        break;
+      case 17:
+        ends_subprogram = true;
+        break;
+      case 2:
+      case 30:
+        add_event(EventKind::m_code, code.number);
+        go_on = false;
+        break;
+      default:
+        break;
+    }
+  }
+  return go_on;
+}
+
+void BlockRunner::add_event(EventKind kind, double value) {
+  out_.events.push_back({value, place_of_block_.called_from, static_cast<std::uint32_t>(out_.moves.size()), kind, false});
+}
+
+/// Letters that belong to no axis or function of a milling machine.
+void BlockRunner::check_letters() {
+  for (const char letter : std::string_view("ABC")) {
+    if (!words_.has(letter) || rotary_axis(letter)) continue;
+    check_rotary_letter(letter);
+  }
+  for (const char letter : std::string_view("UVWQE")) {
+    if (!words_.has(letter)) continue;
+    error(words_.of(letter).offset, "axis", fmt::format("{} is not an axis that Camber knows; X, Y, Z, A, B or C was expected", letter), std::string(1, letter));
+  }
+}
+
+void BlockRunner::finish() {
+  if (corner_.waits && !corner_.modal && !report_.has_errors())
+    report_.error(corner_.offset, "corner-word", fmt::format("{} is not followed by a further move; G1, G2 or G3 was expected", corner_.text));
+  if (radius_.active) {
+    const Radius radius = radius_;
+    end_radius();
+    const std::string message = fmt::format("G{} is never cancelled; G40 with a straight move off the contour was expected before the end", radius.g);
+    if (radius.radius_mm != 0 && !report_.has_errors())
+      report_.error(radius.offset, "cutter-radius", message);
+    else if (radius.radius_mm == 0)
+      report_.warning(radius.offset, "cutter-radius", message);
+  }
+  if (next_tool_ >= 0 && !tool_changed_)
+    report_.warning(tool_word_offset_, "tool-not-changed",
+                    "the program selects tools (T) but never changes one; M6 was expected, all moves count as tool 0");
+  out_.tool_names = tools_.names();
+}
+
+// --- SAVE, system variables
+
+std::shared_ptr<const BlockRunner::Saved> BlockRunner::saved_modes() const {
+  return std::make_shared<const Saved>(Saved{motion_, plane_, absolute_, state_.inch, state_.feed_mode, programmable_, state_.work_offset});
+}
+
+void BlockRunner::restore(const Saved& saved) {
+  motion_ = saved.motion;
+  plane_ = saved.plane;
+  state_.plane_g = static_cast<std::uint8_t>(plane_ == Plane::xy ? 17 : plane_ == Plane::zx ? 18 : 19);
+  absolute_ = saved.absolute;
+  state_.inch = saved.inch;
+  if (state_.feed_mode != saved.feed_mode) feed_.reset();
+  state_.feed_mode = saved.feed_mode;
+  programmable_ = saved.programmable;
+  state_.work_offset = saved.work_offset;
+  change_state();
+  update_frame();
+}
+
+std::optional<Value> BlockRunner::system_value(const std::string& name, const std::vector<Value>& indexes,
+                                               const std::vector<std::string>& index_names) {
+  const auto number = [](double value) { return Value{value, {}, {}}; };
+  const std::string axis = index_names.empty() ? std::string() : index_names[0];
+  const int which = axis == "X" ? 0 : axis == "Y" ? 1 : axis == "Z" ? 2 : -1;
+  if (name == "$P_EP" || name == "$AA_IW") {
+    if (which >= 0) {
+      if (place_[static_cast<std::size_t>(which)] != AxisPlace::known) return std::nullopt;
+      return number(programmed()[which] / unit_mm());
+    }
+    if (axis.size() == 1 && rotary_axis(axis[0]) && angles_unknown_ == 0) return number(deg_from_rad(rotary_rad_[axis[0] - 'A']));
+    return std::nullopt;
+  }
+  if (name == "$P_F") {
+    if (!feed_) return std::nullopt;
+    return number(state_.feed_mode == FeedMode::per_minute       ? *feed_ * 60 / unit_mm()
+                  : state_.feed_mode == FeedMode::per_revolution ? *feed_ / unit_mm()
+                                                                 : *feed_ * 60);
+  }
+  if (name == "$P_S") return number(state_.programmed_spindle_speed_rpm);
+  if (name == "$P_SDIR") return number(state_.spindle == SpindleDirection::clockwise ? 3 : state_.spindle == SpindleDirection::stopped ? 5 : 4);
+  if (name == "$P_MSNUM") return number(main_spindle_);
+  if (name == "$P_TOOLNO") return number(state_.tool);
+  if (name == "$P_TOOLP") return number(std::max(next_tool_, 0));
+  if (name == "$P_TOOL") return number(edge_);
+  if (name == "$P_ISTEST" || name == "$P_SEARCH" || name == "$P_SIM" || name == "$P_DRYRUN" || name == "$P_SEARCHL" || name == "$AC_PROG" ||
+      name == "$P_SIMU" || name == "$P_SEARCH1" || name == "$P_SEARCH_S" || name == "$P_TRAFO_ACTIVE")
+    return number(0);
+  const auto tool_value = [&](int tool, bool radius) -> std::optional<Value> {
+    const auto found = tool_offsets_.find(tool);
+    if (found == tool_offsets_.end()) return std::nullopt;
+    const auto value = radius ? found->second.effective_radius_mm() : found->second.length_mm;
+    if (!value) return std::nullopt;
+    return number(*value / unit_mm());
+  };
+  if (name == "$P_TOOLR") return edge_ == 0 ? number(0) : tool_value(state_.tool, true);
+  if (name == "$P_TOOLL") return edge_ == 0 ? number(0) : tool_value(state_.tool, false);
+  if ((name == "$TC_DP6" || name == "$TC_DP3") && !indexes.empty() && !indexes[0].text)
+    return tool_value(static_cast<int>(std::clamp(indexes[0].number, 0.0, 1e8)), name == "$TC_DP6");
+  if (name == "$P_GG" && !indexes.empty()) {
+    const double group = indexes[0].number;
+    if (group == 1 && motion_ <= Motion::counter_clockwise) return number(static_cast<int>(motion_) + 1);
+    if (group == 6) return number(plane_ == Plane::xy ? 1 : plane_ == Plane::zx ? 2 : 3);
+    if (group == 7) return number(!radius_.active ? 1 : radius_.g == 41 ? 2 : 3);
+    if (group == 13) return number(state_.inch ? 1 : 2);
+    if (group == 14) return number(absolute_ ? 1 : 2);
+    if (group == 15 && state_.feed_mode != FeedMode::inverse_time) return number(state_.feed_mode == FeedMode::per_minute ? 2 : 3);
+    return std::nullopt;
+  }
+  if (name == "$P_PFRAME") {
+    Value out;
+    out.frame = std::make_shared<const Affine>(programmable_);
+    return out;
+  }
+  if (name == "$P_UIFR" && indexes.size() == 3 && !indexes[0].text) {
+    const int n = static_cast<int>(std::clamp(indexes[0].number, 0.0, 99.0));
+    const int axis3 = index_names[1] == "X" ? 0 : index_names[1] == "Y" ? 1 : index_names[1] == "Z" ? 2 : -1;
+    const int offset = n == 0 ? 500 : n <= 4 ? 53 + n : 540000 + n;
+    if (axis3 < 0 || index_names[2] != "TR" || !offsets_.known(offset)) return std::nullopt;
+    return number(offsets_.at(offset).value_mm[axis3] / unit_mm());
+  }
+  return std::nullopt;
+}
+
+}  // namespace camber::nc::siemens

@@ -1,0 +1,15 @@
+#pragma once
+// Siemens Sinumerik as one of the languages (nc/language.h).
+#include <memory>
+#include <string_view>
+
+#include "nc/language.h"
+
+namespace camber::nc::siemens {
+
+LanguageEvidence evidence(std::string_view text);
+Program read(SourceText source, Diagnostics& diagnostics);
+Interpretation interpret(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics);
+std::unique_ptr<TextRules> text_rules(const Program& program);
+
+}  // namespace camber::nc::siemens

@@ -1,0 +1,96 @@
+#pragma once
+// The words of the language: what each is and what the reader does with it. docs/nc-language-siemens.md has the table.
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace camber::nc::siemens {
+
+enum class WordKind : std::uint8_t {
+  address,   ///< NAME=value, NAME[..]=value
+  command,   ///< alone
+  cycle,     ///< NAME(...): moves, or would
+  procedure  ///< NAME(...): a predefined one that does not move
+};
+
+/// What the interpreter does.
+enum class Does : std::uint8_t {
+  nothing,   ///< has no effect on the path: read, and nothing is said
+  noted,     ///< read without effect, and said: the path or its time depends on it on a real control
+  refused,   ///< [not-supported]
+  // addresses
+  radius,         // CR
+  opening_angle,  // AR
+  polar_angle,    // AP
+  polar_radius,   // RP
+  turns,          // TURN
+  via_i,
+  via_j,
+  via_k,          // I1 J1 K1
+  chamfer,        // CHF
+  chamfer_side,   // CHR
+  rounding,       // RND
+  modal_rounding,  // RNDM
+  corner_feed,    // FRC, FRCM
+  line_angle,     // ANG
+  blend_distance,       // ADIS
+  blend_distance_rapid,  // ADISPOS
+  offset_normal,  // OFFN
+  plane_angle,    // RPL
+  direction_a,
+  direction_b,
+  direction_c,    // A3 B3 C3
+  spindle_position,  // SPOS SPOSA
+  position_axis,  // POS POSA POSP
+  // commands
+  supa,
+  trans,
+  atrans,
+  rot,
+  arot,
+  scale,
+  ascale,
+  mirror,
+  amirror,
+  cip,
+  ct,
+  transform_on,   // TRAORI
+  transform_off,  // TRAFOOF
+  contour_mode,   // COMPON ...
+  contour_mode_off,
+  cycle832,
+  cycle800,
+  drilling,       // CYCLE81 ...
+  pattern,        // HOLES1 ...
+  thread_milling,  // CYCLE90
+  modal_call,     // MCALL
+  alarm,          // SETAL
+  end_subprogram,  // RET
+  workpiece,
+  main_spindle,   // SETMS
+  call_text,      // CALL, PCALL
+  home            // machine's own positions
+};
+
+struct WordRow {
+  std::string_view name;
+  WordKind kind = WordKind::command;
+  Does does = Does::nothing;
+  std::string_view what;           ///< for the table
+  std::string_view instead = {};   ///< refused: what could be done
+};
+
+/// All of them, by name.
+std::span<const WordRow> word_rows();
+/// Null for a name that is none of them.
+const WordRow* find_word(std::string_view upper_name);
+
+/// Functions of expressions: SIN, SQRT ...; arguments at least and at most.
+struct FunctionRow {
+  std::string_view name;
+  std::uint8_t least = 1, most = 1;
+};
+const FunctionRow* find_function(std::string_view upper_name);
+std::span<const FunctionRow> functions();
+
+}  // namespace camber::nc::siemens

@@ -1,0 +1,295 @@
+// Words, expressions, flow control, cycles and messages of Sinumerik programs.
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "base/units.h"
+#include "nc/emit.h"
+#include "nc/siemens/words.h"
+#include "test_paths.h"
+#include "tests/nc/siemens_text.h"
+
+namespace camber::nc {
+namespace {
+
+using Messages = std::vector<std::string>;
+
+Vec3 last(const Read& r) { return r.moves.moves.empty() ? Vec3(Vec3::Constant(-999)) : r.moves.moves.back().end_mm; }
+
+/// The value of an expression, by a move in X.
+double value_of(const std::string& expression) {
+  const Read r = read_siemens("DEF REAL VV\nVV=" + expression + "\nG0 X=VV\n");
+  EXPECT_EQ(r.messages, Messages{}) << expression;
+  return last(r).x();
+}
+
+TEST(Siemens, WordsWithoutBlanksInAnyCase) {
+  const Read r = read_siemens("t1d1m6\ng0x10y-.5z+2\ng1 f100 X 12.5\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(last(r), {12.5, -0.5, 2});
+  EXPECT_EQ(r.moves.states.back().tool, 1);
+}
+
+TEST(Siemens, DimensionsOfSingleWords) {
+  const Read r = read_siemens("G0 X10 Y10 Z10\nX=IC(5) Y=AC(3)\nG91 X1 Y=AC(7) Z=IC(-2)\nG90 X=-2.5EX-1\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(r.moves.moves[1].end_mm, {15, 3, 10});
+  expect_near_mm(r.moves.moves[2].end_mm, {16, 7, 8});
+  expect_near_mm(last(r), {-0.25, 7, 8});
+}
+
+TEST(Siemens, ExpressionsFollowThePrioritiesOfTheManual) {
+  EXPECT_DOUBLE_EQ(value_of("2+3*4"), 14);
+  EXPECT_DOUBLE_EQ(value_of("-2*-3"), 6);
+  EXPECT_DOUBLE_EQ(value_of("8/3"), 8.0 / 3);
+  EXPECT_DOUBLE_EQ(value_of("7 DIV 2"), 3);
+  EXPECT_DOUBLE_EQ(value_of("7 MOD 4"), 3);
+  EXPECT_DOUBLE_EQ(value_of("-7 MOD 4"), -3);
+  EXPECT_DOUBLE_EQ(value_of("12 B_AND 10"), 8);
+  EXPECT_DOUBLE_EQ(value_of("12 B_XOR 10"), 6);
+  EXPECT_DOUBLE_EQ(value_of("'H1F'+'B101'"), 36);
+  EXPECT_DOUBLE_EQ(value_of("TRUNC(-2.7)"), -2);
+  EXPECT_DOUBLE_EQ(value_of("ROUND(2.5)"), 3);
+  EXPECT_DOUBLE_EQ(value_of("ROUNDUP(2.1)"), 3);
+  EXPECT_DOUBLE_EQ(value_of("POT(3)+SQRT(16)"), 13);
+  EXPECT_DOUBLE_EQ(value_of("SIN(30)"), std::sin(kPi / 6));
+  EXPECT_DOUBLE_EQ(value_of("SIN(180)+COS(90)"), 0);
+  EXPECT_DOUBLE_EQ(value_of("ATAN2(1,-1)"), 135);
+  EXPECT_DOUBLE_EQ(value_of("BOUND(-1,1,5)+MINVAL(2,3)+MAXVAL(2,3)"), 6);
+  EXPECT_DOUBLE_EQ(value_of("NUMBER(\"1\"<<2.5)"), 12.5);
+  EXPECT_DOUBLE_EQ(value_of("STRLEN(\"A\"<<10)"), 3);
+  EXPECT_DOUBLE_EQ(value_of("(0.1+0.2==0.3)*5"), 5);  // relative equality
+  EXPECT_DOUBLE_EQ(value_of("(NOT 0)+(1 OR 0 AND 0)"), 2);
+}
+
+TEST(Siemens, VariablesArraysAndTheirRounding) {
+  const Read r = read_siemens(
+      "DEF INT NN=2.6, FELD[2,3]=SET(1,2,3,4,5,6)\nDEF STRING[20] NAME=\"A\"\nDEF BOOL BB\nR[NN]=FELD[1,2]\nBB=17\nNAME=NAME<<\"B\"\n"
+      "G0 X=NN Y=R3+BB Z=STRLEN(NAME)\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(last(r), {3, 7, 2});
+}
+
+TEST(Siemens, JumpsGoToTheNearestLabelInTheirDirection) {
+  const Read r = read_siemens(
+      "R1=0\nMA: R1=R1+1\nIF R1==1 GOTOF MA IF R1==9 GOTOF ENDE\nGOTOF ENDE\nMA: R1=R1+10\nIF R1<30 GOTOB MA\nGOTOF N100\nG0 X1\nN100 G0 X=R1\nENDE:\nM30\nN100 G0 "
+      "X99\n");
+  expect_near_mm(last(r), {31, 0, 0});
+}
+
+TEST(Siemens, LoopsAndBranches) {
+  const Read r = read_siemens(
+      "DEF INT II\nR1=0\nFOR II=1 TO 3\nR1=R1+II\nENDFOR\nWHILE R1<10\nR1=R1+1\nENDWHILE\nREPEAT\nR1=R1+1\nUNTIL R1>=12\nLOOP\nR1=R1+1\nIF R1>14 GOTOF RAUS\nENDLOOP\n"
+      "RAUS:\nIF R1==15\nG0 X=R1\nELSE\nG0 X99\nENDIF\nCASE(II) OF 1 GOTOF MA 4 GOTOF MB DEFAULT GOTOF MA\nMA: G0 Y99\nMB: G0 Z=II\n");
+  EXPECT_EQ(r.messages, (Messages{}));
+  expect_near_mm(last(r), {15, 0, 4});
+}
+
+TEST(Siemens, RepeatedParts) {
+  const Read r = read_siemens("G0 X0 Y0 Z0\nG91\nMA: X1\nREPEAT MA P=3\nMB: Y1\nMC: Y1\nZ1\nREPEAT MB MC P=2\nREPEATB MB\nG90\nM30\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(last(r), {4, 7, 1});
+}
+
+TEST(Siemens, SubprogramsWithParameters) {
+  const Read r = read_siemens(
+      "%_N_MAIN_MPF\n;$PATH=/_N_MPF_DIR\nDEF REAL AA[2], BB=3\nG0 X0 Y0 Z0\nUP(AA,BB,5)\nG0 X=AA[0] Y=AA[1] Z=BB\nL10(7) P2\nM30\n%_N_UP_SPF\n"
+      "PROC UP(VAR REAL FF[2], VAR REAL BB, REAL CC, INT DD=4) SAVE DISPLOF\nG91\nFF[0]=CC+DD FF[1]=BB\nBB=BB*2\nRET\n%_N_L10_SPF\nPROC L10(REAL WW)\nG1 F100 X=IC(WW)\nM17\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(last(r), {23, 3, 6});
+}
+
+TEST(Siemens, ModalSubprogramRunsBehindEachMove) {
+  const Read r = read_siemens("G0 X0 Y0 Z5\nMCALL TIEF(2)\nX1\nX2\nMCALL\nX3\nM30\n%_N_TIEF_SPF\nPROC TIEF(REAL TT)\nG1 Z=-TT F100\nG0 Z5\nRET\n");
+  EXPECT_EQ(r.messages, Messages{});
+  EXPECT_EQ(r.moves.moves.size(), 8U);
+  expect_near_mm(last(r), {3, 0, 5});
+}
+
+TEST(Siemens, FramesReplaceAddAndReset) {
+  const Read r = read_siemens("TRANS X10 Y20\nG0 X1 Y0 Z0\nAROT Z90\nX1 Y0\nASCALE X2 Y2\nX1 Y0\nMIRROR X0\nX1 Y2\nROT RPL=90\nX1 Y0\nTRANS\nX1 Y0\n");
+  EXPECT_EQ(r.messages, Messages{});
+  const auto ends = ends_of(r);
+  expect_near_mm(ends[0], {11, 20, 0});
+  expect_near_mm(ends[1], {10, 21, 0});
+  expect_near_mm(ends[2], {10, 22, 0});
+  expect_near_mm(ends[3], {-1, 2, 0});
+  expect_near_mm(ends[4], {0, 1, 0});
+  expect_near_mm(ends[5], {1, 0, 0});
+}
+
+TEST(Siemens, FrameVariables) {
+  const Read r = read_siemens("$P_PFRAME=CTRANS(X,10):CROT(Z,90)\nG0 X1 Y0 Z0\n$P_PFRAME=CMIRROR(Y)\nX1 Y1\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(r.moves.moves[0].end_mm, {10, 1, 0});
+  expect_near_mm(last(r), {1, -1, 0});
+}
+
+TEST(Siemens, ArcsInAllTheirForms) {
+  const char* const kForms[] = {"G3 X0 Y10 I-10 J0", "G3 X0 Y10 CR=10", "G3 X0 Y10 I=AC(0) J=AC(0)", "G3 X0 Y10 AR=90", "G3 I-10 AR=90", "CIP X0 Y10 I1=10*COS(45) J1=10*SIN(45)",
+                                "G111 X0 Y0\nG3 AP=90 RP=10"};
+  for (const char* form : kForms) {
+    const Read r = read_siemens(std::string("G0 X10 Y0 Z0\nG1 F100\n") + form + "\n");
+    EXPECT_EQ(r.messages, Messages{}) << form;
+    ASSERT_EQ(r.moves.moves.back().kind, MoveKind::arc) << form;
+    expect_near_mm(last(r), {0, 10, 0});
+    expect_near_mm(r.moves.arcs.back().center_mm, {0, 0, 0});
+    EXPECT_NEAR(r.moves.arcs.back().sweep_rad, kPi / 2, 1e-9) << form;
+  }
+}
+
+TEST(Siemens, HelixWithTurns) {
+  const Read r = read_siemens("G0 X10 Y0 Z0\nG2 X10 Y0 Z-6 I-10 J0 TURN=2 F100\n");
+  EXPECT_EQ(r.messages, Messages{});
+  EXPECT_NEAR(r.moves.arcs.back().sweep_rad, -6 * kPi, 1e-9);
+}
+
+TEST(Siemens, CornersAreRoundedAndChamfered) {
+  Read r = read_siemens("G0 X0 Y0 Z0\nG1 X10 RND=2 F100\nY10 CHR=1\nX0 CHF=2\nY0\n");
+  EXPECT_EQ(r.messages, Messages{});
+  const auto ends = ends_of(r);
+  ASSERT_EQ(ends.size(), 8U);
+  expect_near_mm(ends[1], {8, 0, 0});
+  expect_near_mm(ends[2], {10, 2, 0});
+  expect_near_mm(ends[3], {10, 9, 0});
+  expect_near_mm(ends[4], {9, 10, 0});
+  expect_near_mm(ends[5], {std::sqrt(2), 10, 0});  // the chamfer is 2 mm long
+  expect_near_mm(ends[6], {0, 10 - std::sqrt(2), 0});
+  r = read_siemens("G0 X0 Y0 Z0\nRNDM=1\nG1 X10 F100\nY10\nRNDM=0\nX0\n");
+  EXPECT_EQ(r.messages, Messages{});
+  EXPECT_EQ(r.moves.arcs.size(), 2U);
+}
+
+TEST(Siemens, RadiusCompensationWithAllowance) {
+  InterpreterOptions options{.inch = false};
+  options.tool_offsets[1].radius_mm = 4;
+  const Read r = read_siemens("T1 M6\nG0 X0 Y-20 Z0\nOFFN=1\nG1 G41 X0 Y0 F100\nX0 Y30\nG40 X-20 Y30\n", options);
+  ASSERT_EQ(r.messages.size(), 1U);
+  const auto ends = ends_of(r);
+  expect_near_mm(ends[1], {-5, 0, 0});
+  expect_near_mm(ends[2], {-5, 30, 0});
+  expect_near_mm(ends[3], {-20, 30, 0});
+}
+
+TEST(Siemens, DrillingCycles) {
+  const auto heights = [](const std::string& cycle) {
+    const Read r = read_siemens("S1000 M3 F100\nG0 X0 Y0 Z20\n" + cycle + "\n");
+    EXPECT_EQ(r.messages, Messages{}) << cycle;
+    std::vector<double> out;
+    for (std::size_t i = 1; i < r.moves.moves.size(); ++i)
+      if (r.moves.moves[i].kind != MoveKind::dwell) out.push_back(r.moves.moves[i].end_mm.z());
+    return out;
+  };
+  EXPECT_EQ(heights("CYCLE81(10,0,2,-5)"), (std::vector<double>{2, -5, 10}));
+  EXPECT_EQ(heights("CYCLE82(10,0,2,,7,0.5)"), (std::vector<double>{2, -7, 10}));
+  EXPECT_EQ(heights("CYCLE83(10,0,1,-12,,,5,1,,,1,1,,,,,0.5)"), (std::vector<double>{1, -5, 1, -4.5, -9, 1, -8.5, -12, 10}));
+  EXPECT_EQ(heights("CYCLE83(10,0,1,-6,,,3,0,,,1,0,,,0.2)"), (std::vector<double>{1, -3, -2.8, -6, 10}));
+  EXPECT_EQ(heights("CYCLE84(10,0,2,-5,,,,,1.25,0,500)"), (std::vector<double>{2, -5, 2, 10}));
+  EXPECT_EQ(heights("CYCLE85(10,0,2,-5,,0,80,160)"), (std::vector<double>{2, -5, 2, 10}));
+  EXPECT_EQ(heights("CYCLE86(10,0,2,-5,,0,3,-1,0,1,0)"), (std::vector<double>{2, -5, -4, 2, 10}));
+}
+
+TEST(Siemens, PatternsOfHoles) {
+  const Read r = read_siemens("F100\nG0 X0 Y0 Z20\nMCALL CYCLE81(10,0,2,-5)\nHOLES1(10,0,0,0,10,3)\nHOLES2(0,0,20,0,90,4)\nMCALL\n");
+  EXPECT_EQ(r.messages, Messages{});
+  std::vector<Vec3> bottoms;
+  for (const Move& m : r.moves.moves)
+    if (m.end_mm.z() == -5) bottoms.push_back(m.end_mm);
+  ASSERT_EQ(bottoms.size(), 7U);
+  expect_near_mm(bottoms[2], {30, 0, -5});
+  expect_near_mm(bottoms[4], {0, 20, -5});
+}
+
+TEST(Siemens, ModesOfTheControl) {
+  const Read r = read_siemens("G0 X0 Y0 Z0\nCYCLE832(0.02,3,1)\nG64\nG1 X1 F100\nCYCLE832()\nX2\nG641 ADIS=0.1\nX3\nG60\nX4\n");
+  EXPECT_EQ(r.messages, Messages{});
+  const auto state = [&](std::size_t i) { return r.moves.state_of(r.moves.moves[i]); };
+  EXPECT_EQ(state(1).contouring, Contouring::cycle832);
+  EXPECT_DOUBLE_EQ(state(1).blend_tolerance_mm, 0.02);
+  EXPECT_EQ(state(2).contouring, Contouring::none);
+  EXPECT_DOUBLE_EQ(state(3).blend_tolerance_mm, 0.1);
+  EXPECT_EQ(state(4).path_control, PathControl::exact_stop);
+}
+
+TEST(Siemens, ToolsByNameHaveNumbersOfTheirOwn) {
+  const Read r = read_siemens("T=\"MILL\" M6\nG0 X0 Y0 Z0\nT1\nM6\nX1\nT=\"MILL\"\nM6\nX2\n");
+  EXPECT_EQ(r.messages, Messages{});
+  EXPECT_EQ(r.moves.state_of(r.moves.moves[0]).tool, 2);
+  EXPECT_EQ(r.moves.state_of(r.moves.moves[1]).tool, 1);
+  EXPECT_EQ(r.moves.tool_names.at(2), "MILL");
+}
+
+TEST(Siemens, StockOfWorkpiece) {
+  const Read r = read_siemens("WORKPIECE(,\"\",,\"BOX\",112,0,-15,-15,-10,-40,80,50)\nG0 X0 Y0 Z5\n");
+  ASSERT_TRUE(r.moves.stock);
+  expect_near_mm(r.moves.stock->min_mm, {-10, -40, -15});
+  expect_near_mm(r.moves.stock->max_mm, {80, 50, 0});
+}
+
+TEST(Siemens, WrongProgramsGetAMessageAtTheLine) {
+  const auto said = [](const std::string& text) { return read_siemens(text).messages; };
+  EXPECT_EQ(said("G0 X0 Y0 Z0\nTRAOOF\n"),
+            (Messages{"p.mpf:2:1: error: no subprogram TRAOOF: neither %_N_TRAOOF_SPF in this file nor TRAOOF.SPF beside it [subprogram]"}));
+  EXPECT_EQ(said("println(\"END\")\n"),
+            (Messages{"p.mpf:1:1: error: no subprogram PRINTLN: neither %_N_PRINTLN_SPF in this file nor PRINTLN.SPF beside it [subprogram]"}));
+  EXPECT_EQ(said("G0 X10 Y0 Z0\nG3 X-10 Y0 I10 J0 F100\n"),
+            (Messages{"p.mpf:2:1: error: the radius of the arc is 10.0000 mm at its start and 30.0000 mm at its end; a difference below 0.05 mm was expected (with the signs of I, J, K turned "
+                      "over it would fit: they lead from the start to the centre) [arc-radius]"}));
+  EXPECT_EQ(said("G0 X0 Y0 Z0\nPOCKET3(5,0,1)\n"),
+            (Messages{"p.mpf:2:1: error: POCKET3 (rectangular pocket) is not supported; what can stand in its place: the moves themselves, G0 to G3, from the CAM system [not-supported]"}));
+  EXPECT_EQ(said("GOTOF WEITER\n"), (Messages{"p.mpf:1:1: error: no label or block number WEITER in this program [jump]"}));
+  EXPECT_EQ(said("IF R1==1\nG0 X1\n"), (Messages{"p.mpf:1:1: error: IF has no end; ENDIF was expected [statement]"}));
+  EXPECT_EQ(said("G0 X=TIEFE\n"), (Messages{"p.mpf:1:6: error: TIEFE is not declared here; DEF was expected before [variable]"}));
+  EXPECT_EQ(said("R1=$AA_IM[Z]\nG0 X=R1\n"), (Messages{"p.mpf:2:6: error: X depends on $AA_IM, which is not known outside the machine; a value was expected [unknown-value]"}));
+  EXPECT_EQ(said("G0 X10 Y\n"), (Messages{"p.mpf:1:8: error: Y has no number; a number, or = and an expression, was expected [no-number]"}));
+  EXPECT_EQ(said("M5 G1234\n"), (Messages{"p.mpf:1:4: error: G1234 is not a G function of a Sinumerik program that Camber knows [unknown-g]"}));
+  EXPECT_EQ(said("R1=1/0\n"), (Messages{"p.mpf:1:4: error: a division by zero [expression]"}));
+  EXPECT_EQ(said("WHEN TRUE DO POS[X]=10\n"),
+            (Messages{"p.mpf:1:1: error: a synchronized action that moves an axis is not supported; the moves as blocks of their own were expected [not-supported]"}));
+  EXPECT_EQ(said("SETAL(65000)\n"), (Messages{"p.mpf:1:1: error: the program reaches SETAL(65000), an alarm of its own, which stops the machine [alarm]"}));
+}
+
+TEST(Siemens, AnEndlessLoopIsAnError) {
+  InterpreterOptions options{.inch = false};
+  options.max_repeated_blocks = 1000;
+  for (const char* text : {"MA:\nGOTOB MA\n", "LOOP\nR1=R1+1\nENDLOOP\n", "MA: R1=1\nREPEAT MA P=9999\nGOTOB MA\n"}) {
+    const Read r = read_siemens(text, options);
+    ASSERT_EQ(r.messages.size(), 1U) << text;
+    EXPECT_NE(r.messages[0].find("[endless]"), std::string::npos) << r.messages[0];
+  }
+}
+
+TEST(Siemens, EditsKeepTheFormOfTheWords) {
+  const std::string text =
+      "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\nN10 G0 X0 Y0 Z0\nN20 G1 X=10 Y5 F200 ; cut\nN30 X=IC(10)\nN40 G3 X30 Y15 CR=10\nN50 G2 X40 Y25 I=AC(40) J=AC(15)\nN60 G1 X=R1 Y=3\nN70 M30\n";
+  const Read r = read_siemens(text);
+  EXPECT_EQ(r.messages, Messages{});
+  std::vector<MoveEdit> edits;
+  for (std::uint32_t m = 1; m < 6; ++m) {
+    MoveEdit edit{.move = m, .end_mm = r.moves.moves[m].end_mm + Vec3(0.1, 0.2, 0)};
+    if (r.moves.moves[m].arc != Move::kNoArc) edit.center_mm = r.moves.arcs[r.moves.moves[m].arc].center_mm + Vec3(0.1, 0.2, 0);
+    edits.push_back(edit);
+  }
+  edits[0].via = {{Vec3(5, 2.6, 0)}};
+  const Emission out = emit_edits(r.program, r.moves, edits, {.header_comment = "changed"});
+  EXPECT_EQ(out.text,
+            "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\n; changed\nN10 G0 X0 Y0 Z0\nN20 G1 X=5 Y2.6 F200 ; cut\nX10.1 Y5.2\nN30 X=IC(10)\nN40 G3 X30.1 Y15.2 CR=10\nN50 G2 X40.1 Y25.2 I=AC(40.1) "
+            "J=AC(15.2)\nN60 G1 X=R1 Y=3\nN70 M30\n");
+  ASSERT_EQ(out.not_made.size(), 1U);
+  EXPECT_EQ(out.not_made[0].why, EmitGap::not_in_text);
+}
+
+TEST(Siemens, EveryWordStandsInThePage) {
+  std::ifstream in(CAMBER_SOURCE_DIR "/docs/nc-language-siemens.md");
+  std::set<std::string> documented, known;
+  bool words = false;
+  for (std::string line; std::getline(in, line);) {
+    words = words || line == "## Words";
+    if (words && line.starts_with("| ") && !line.starts_with("| word ")) documented.insert(line.substr(2, line.find(" |", 2) - 2));
+  }
+  for (const siemens::WordRow& row : siemens::word_rows()) known.insert(std::string(row.name));
+  EXPECT_EQ(documented, known);
+}
+
+}  // namespace
+}  // namespace camber::nc
