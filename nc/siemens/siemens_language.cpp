@@ -14,14 +14,17 @@ namespace {
 /// Words that neither ISO G code nor Klartext has, at the beginning of a word.
 bool shows_siemens(std::string_view name, char next) {
   if (name.starts_with("_N_")) return true;
-  if (name == "MSG" || name == "DEF" || name == "PROC" || name == "EXTERN" || name == "MCALL" || name == "SUPA" || name == "GOTOF" || name == "GOTOB" ||
-      name == "WORKPIECE" || name == "REPEATB" || name == "ENDFOR" || name == "ENDLOOP")
+  if (name == "MSG" || name == "DEF" || name == "PROC" || name == "EXTERN" || name == "MCALL" || name == "SUPA" ||
+      name == "GOTOF" || name == "GOTOB" || name == "WORKPIECE" || name == "REPEATB" || name == "ENDFOR" ||
+      name == "ENDLOOP")
     return true;
   const WordRow* row = find_word(name);
   if (!row) return false;
   if (row->kind == WordKind::address) return next == '=';
   if (row->kind == WordKind::cycle) return true;
-  static constexpr std::string_view kNot[] = {"CALL", "ROT", "TRANS", "START", "GET", "WRITE", "DELETE", "SAVE", "INIT", "DRIVE", "SOFT", "HOME", "NORM", "POLY", "RET", "CT", "CP"};
+  static constexpr std::string_view kNot[] = {"CALL",   "ROT",  "TRANS", "START", "GET",  "WRITE",
+                                              "DELETE", "SAVE", "INIT",  "DRIVE", "SOFT", "HOME",
+                                              "NORM",   "POLY", "RET",   "CT",    "CP"};
   if (std::ranges::find(kNot, name) != std::end(kNot)) return false;
   return true;
 }
@@ -69,7 +72,8 @@ LanguageEvidence evidence(std::string_view text) {
       }
       std::string name;
       const std::size_t begin = i;
-      while (i < end && (is_letter(text[i]) || text[i] == '_' || (is_digit(text[i]) && name.size() > 1))) name += upper(text[i++]);
+      while (i < end && (is_letter(text[i]) || text[i] == '_' || (is_digit(text[i]) && name.size() > 1)))
+        name += upper(text[i++]);
       std::size_t behind = i;
       while (behind < end && (text[behind] == ' ' || is_digit(text[behind]))) ++behind;
       const char next = behind < end ? text[behind] : '\0';
