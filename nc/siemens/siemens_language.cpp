@@ -43,6 +43,7 @@ bool is_own_g(std::string_view digits) {
 LanguageEvidence evidence(std::string_view text) {
   constexpr std::size_t kLines = 400;
   LanguageEvidence out;
+  bool ended = false;  // behind M30 only further programs count
   std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
   for (std::size_t line = 0; line < kLines && at < text.size(); ++line) {
     const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
@@ -62,7 +63,9 @@ LanguageEvidence evidence(std::string_view text) {
     if (text.substr(i, 4) == "%_N_") {
       found(i, "%_N_");
       i = end;
+      ended = false;
     }
+    if (ended) i = end;
     for (int words = 0; i < end && words < 60; ++words) {
       const char c = text[i];
       if (c == ';' || c == '(' || c == '"' || c == '#' || c == '[' || c == '<') break;
@@ -87,7 +90,9 @@ LanguageEvidence evidence(std::string_view text) {
         }
         std::size_t digits = i;
         while (digits < end && is_digit(text[digits])) ++digits;
-        if (name[0] == 'G' && is_own_g(text.substr(i, digits - i))) {
+        const std::string_view code = text.substr(i, digits - i);
+        ended |= name[0] == 'M' && (code == "30" || code == "2" || code == "02");
+        if (name[0] == 'G' && is_own_g(code)) {
           found(begin, std::string(text.substr(begin, digits - begin)));
           break;
         }
