@@ -115,7 +115,7 @@ void Emitter::run_block_in_program(const Move& move, const MoveEdit* edit, const
   BlockWriter writer = writer_of(move.block);
   if (rules_->goes_to_machine_place(move.block)) {
     leave_for_machine_place(writer, move, last_end);
-  } else if (move.canned) {
+  } else if (moves_.moves[end_ - 1].canned) {  // all of its moves, or those behind the way to the hole
     drill(writer, move, last_end, normal);
   } else if (move.kind == MoveKind::rapid && !edit && !move.end_fixed) {
     go_rapidly(writer, move);

@@ -44,10 +44,10 @@ void Emitter::drill(BlockWriter& writer, const Move& move, const Vec3& last_end,
 
 /// The axis that the cycle's feed moves run along.
 int Emitter::cycle_normal(std::size_t first, std::size_t end) const {
-  if (!moves_.moves[first].canned) return 2;
+  if (!moves_.moves[end - 1].canned) return 2;
   for (std::size_t m = first; m < end; ++m) {
     const Move& move = moves_.moves[m];
-    if (move.kind != MoveKind::linear) continue;
+    if (move.kind != MoveKind::linear || !move.canned) continue;
     Eigen::Index axis = 0;
     (move.end_mm - move.start_mm).cwiseAbs().maxCoeff(&axis);
     return static_cast<int>(axis);

@@ -84,7 +84,16 @@ class BlockRunner : public SystemValues {
   double unit_mm() const override { return state_.inch ? kInch : 1.0; }
 
  private:
-  enum class Motion : std::uint8_t { rapid, linear, clockwise, counter_clockwise, through_point, tangential, tapping_in, tapping_out };
+  enum class Motion : std::uint8_t {
+    rapid,
+    linear,
+    clockwise,
+    counter_clockwise,
+    through_point,
+    tangential,
+    tapping_in,
+    tapping_out
+  };
   static constexpr double kInch = 25.4;
 
   /// Non-modal requests of the block.

@@ -24,7 +24,8 @@ void BlockRunner::read_corner(std::size_t moves_before) {
     if (!slot.given) continue;
     const std::string text = fmt::format("{}={:g}", kind.name, slot.value);
     if (!cut) {
-      if (!request_.trouble) error(slot.offset, "corner-word", fmt::format("{} in a block without a cut; G1, G2 or G3 was expected", text));
+      if (!request_.trouble)
+        error(slot.offset, "corner-word", fmt::format("{} in a block without a cut; G1, G2 or G3 was expected", text));
       continue;
     }
     if (slot.value < 0) {
@@ -32,7 +33,8 @@ void BlockRunner::read_corner(std::size_t moves_before) {
       continue;
     }
     if (corner_.waits && !corner_.modal) {
-      error(slot.offset, "corner-word", fmt::format("{} and {} in one block; one of them was expected", corner_.text, text));
+      error(slot.offset, "corner-word",
+            fmt::format("{} and {} in one block; one of them was expected", corner_.text, text));
       continue;
     }
     corner_ = {true, kind.chamfer, false, slot.value * unit_mm(), out_.moves.size() - 1, slot.offset, text};
@@ -40,7 +42,13 @@ void BlockRunner::read_corner(std::size_t moves_before) {
     if (kind.extra == Extra::chf) corner_.text = text;
   }
   if (modal_rounding_mm_ > 0 && cut && !corner_.waits)
-    corner_ = {true, false, true, modal_rounding_mm_, out_.moves.size() - 1, words_.offset(), fmt::format("RNDM={:g}", modal_rounding_mm_ / unit_mm())};
+    corner_ = {true,
+               false,
+               true,
+               modal_rounding_mm_,
+               out_.moves.size() - 1,
+               words_.offset(),
+               fmt::format("RNDM={:g}", modal_rounding_mm_ / unit_mm())};
 }
 
 void BlockRunner::finish_corner(std::size_t moves_before) {
@@ -60,14 +68,20 @@ void BlockRunner::put_corner(const Corner& corner, std::size_t before, std::size
   const bool same_plane = out_.frame_of(b) == out_.frame_of(a) && out_.state_of(a).plane_g == out_.state_of(b).plane_g;
   const Frame& frame = out_.frame_of(a);
   const int normal = axes_of(plane_).normal;
-  const auto leaves = [&](const Move& m) { return std::abs((frame.to_program(m.end_mm) - frame.to_program(m.start_mm))[normal]) > 1e-9; };
+  const auto leaves = [&](const Move& m) {
+    return std::abs((frame.to_program(m.end_mm) - frame.to_program(m.start_mm))[normal]) > 1e-9;
+  };
   const auto still = [&](const Move& m) { return (m.end_mm - m.start_mm).norm() < 1e-9 && m.arc == Move::kNoArc; };
-  if (corner.modal && (!cuts || !same_plane || leaves(a) || leaves(b) || still(a) || still(b))) return;  // RNDM rounds where it can
-  a.editable = b.editable = a.end_fixed = b.end_fixed = false;
+  if (corner.modal && (!cuts || !same_plane || leaves(a) || leaves(b) || still(a) || still(b)))
+    return;  // RNDM rounds where it can
+  a.editable = b.editable = false;
   if (!cuts || leaving_ || !std::ranges::all_of(out_.rotary, [&](const RotaryTarget& t) { return t.move < before; }))
-    return fail(fmt::format("{} is not followed by a line or an arc of its kind; G1, G2 or G3 in the plane was expected", corner.text));
-  if (state_.feed_mode == FeedMode::inverse_time) return fail(fmt::format("{} in inverse time (G93) is not supported", corner.text));
-  if (!same_plane) return fail(fmt::format("{} before a block in another plane or frame; the same was expected", corner.text));
+    return fail(fmt::format(
+        "{} is not followed by a line or an arc of its kind; G1, G2 or G3 in the plane was expected", corner.text));
+  if (state_.feed_mode == FeedMode::inverse_time)
+    return fail(fmt::format("{} in inverse time (G93) is not supported", corner.text));
+  if (!same_plane)
+    return fail(fmt::format("{} before a block in another plane or frame; the same was expected", corner.text));
   double size_mm = corner.size_mm;
   if (corner.chamfer && corner.text.starts_with("CHF")) {
     // The length of the chamfer of two lines that enclose an angle: 2 * distance * sin(half the angle).

@@ -13,9 +13,10 @@ namespace {
 
 /// Pitches of metric coarse threads by their nominal diameter (ISO 261): MPIT.
 double coarse_pitch(double nominal_mm) {
-  constexpr std::pair<double, double> kPitches[] = {{3, 0.5}, {4, 0.7}, {5, 0.8}, {6, 1}, {8, 1.25}, {10, 1.5}, {12, 1.75}, {14, 2},
-                                                    {16, 2}, {18, 2.5}, {20, 2.5}, {22, 2.5}, {24, 3}, {27, 3}, {30, 3.5}, {33, 3.5},
-                                                    {36, 4}, {39, 4}, {42, 4.5}, {45, 4.5}, {48, 5}};
+  constexpr std::pair<double, double> kPitches[] = {{3, 0.5},   {4, 0.7},  {5, 0.8},  {6, 1},    {8, 1.25}, {10, 1.5},
+                                                    {12, 1.75}, {14, 2},   {16, 2},   {18, 2.5}, {20, 2.5}, {22, 2.5},
+                                                    {24, 3},    {27, 3},   {30, 3.5}, {33, 3.5}, {36, 4},   {39, 4},
+                                                    {42, 4.5},  {45, 4.5}, {48, 5}};
   for (const auto& [nominal, pitch] : kPitches)
     if (std::abs(nominal - nominal_mm) < 1e-9) return pitch;
   return 0;
@@ -36,7 +37,9 @@ int hole_of(int cycle) { return cycle == 840 ? 84 : cycle == 88 ? 88 : cycle; }
 /// A step of a cycle, in program coordinates.
 void BlockRunner::go(CycleStep::Kind kind, const Vec3& program_mm, double feed_mm_per_s, int g) {
   if (kind != CycleStep::Kind::dwell && (program_mm - programmed()).cwiseAbs().maxCoeff() < 1e-9) return;
-  const MoveKind move_kind = kind == CycleStep::Kind::rapid ? MoveKind::rapid : kind == CycleStep::Kind::dwell ? MoveKind::dwell : MoveKind::linear;
+  const MoveKind move_kind = kind == CycleStep::Kind::rapid   ? MoveKind::rapid
+                             : kind == CycleStep::Kind::dwell ? MoveKind::dwell
+                                                              : MoveKind::linear;
   const Vec3 before = programmed();
   Move& move = add_move(move_kind, kind == CycleStep::Kind::dwell ? position_mm_ : frame_.from_program(program_mm));
   ++cycle_moves_;
@@ -55,7 +58,10 @@ void BlockRunner::go_round(const Vec3& end, const Vec3& centre, double sweep_rad
   arc.normal = normal_of(plane_);
   arc.sweep_rad = sweep_rad;
   const auto in_moves = frame_.plain ? arc : from_program(frame_, arc);
-  if (!in_moves) return error(words_.offset(), "scaling", "an arc under a scale that differs along its two axes would be an ellipse; one scale for both was expected");
+  if (!in_moves)
+    return error(
+        words_.offset(), "scaling",
+        "an arc under a scale that differs along its two axes would be an ellipse; one scale for both was expected");
   out_.arcs.push_back(*in_moves);
   Move& move = add_move(MoveKind::arc, frame_.from_program(end));
   ++cycle_moves_;
@@ -81,7 +87,8 @@ void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
       swivel(call, place);
       break;
     case Does::cycle832: {
-      // CYCLE832(tolerance, kind, ...): the ones of the kind are 0 (off), 1 finishing, 2 semi-finishing, 3 roughing, 4 precision.
+      // CYCLE832(tolerance, kind, ...): the ones of the kind are 0 (off), 1 finishing, 2 semi-finishing, 3 roughing, 4
+      // precision.
       const int kind = static_cast<int>(std::abs(call.number(1, call.has(0) && call.number(0) > 0 ? 1 : 0))) % 10;
       cycle832_ = kind != 0;
       cycle832_tolerance_mm_ = cycle832_ && call.number(0) > 0 ? call.number(0) * unit_mm() : -1;
@@ -100,13 +107,15 @@ void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
 /// The feed of a cycle: its own parameter, or the one that is active.
 std::optional<double> BlockRunner::cycle_feed(double given, const CycleCall& call, const char* what) {
   if (given > 0)
-    return state_.feed_mode == FeedMode::per_revolution ? given * unit_mm() * state_.spindle_speed_rpm / 60 : mm_per_s_from_mm_per_min(given * unit_mm());
+    return state_.feed_mode == FeedMode::per_revolution ? given * unit_mm() * state_.spindle_speed_rpm / 60
+                                                        : mm_per_s_from_mm_per_min(given * unit_mm());
   if (state_.feed_mode == FeedMode::inverse_time) {
     error(call.offset, "cycle", fmt::format("{} in inverse time (G93); G94 was expected before", call.row->name));
     return std::nullopt;
   }
   if (!feed_ || *feed_ == 0) {
-    error(call.offset, "feed-missing", fmt::format("{} without a feed ({}); F greater than zero was expected before", call.row->name, what), "feed");
+    error(call.offset, "feed-missing",
+          fmt::format("{} without a feed ({}); F greater than zero was expected before", call.row->name, what), "feed");
     return std::nullopt;
   }
   return cutting_feed(0, call.row->name.data());
@@ -125,19 +134,31 @@ void BlockRunner::drill(const CycleCall& call) {
   else
     settle_axes_for(name.c_str(), false);
   prepare_cutting(name.c_str());
-  if (radius_.active && radius_.radius_mm != 0) return error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
-  if (!call.has(0)) return error(call.offset, "cycle", fmt::format("{} has no retraction plane; RTP, its first value, was expected", name), name + " RTP");
+  if (radius_.active && radius_.radius_mm != 0)
+    return error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
+  if (!call.has(0))
+    return error(call.offset, "cycle",
+                 fmt::format("{} has no retraction plane; RTP, its first value, was expected", name), name + " RTP");
   const double unit = unit_mm();
   const double reference = call.number(1) * unit, level = reference + std::abs(call.number(2)) * unit;
   const double rtp = call.number(0) * unit;
   const bool by_dpr = call.has(4) && (call.number(4) != 0 || !call.has(3));
-  if (!by_dpr && !call.has(3)) return error(call.offset, "cycle", fmt::format("{} has no depth; DP or DPR, its fourth or fifth value, was expected", name), name + " DP");
+  if (!by_dpr && !call.has(3))
+    return error(call.offset, "cycle",
+                 fmt::format("{} has no depth; DP or DPR, its fourth or fifth value, was expected", name),
+                 name + " DP");
   const double bottom = by_dpr ? reference - std::abs(call.number(4)) * unit : call.number(3) * unit;
   if (bottom > level)
-    return error(call.offset, "cycle", fmt::format("the bottom of {} at {:.4f} mm is above its reference plane with safety clearance, {:.4f} mm", name, bottom, level));
+    return error(
+        call.offset, "cycle",
+        fmt::format("the bottom of {} at {:.4f} mm is above its reference plane with safety clearance, {:.4f} mm", name,
+                    bottom, level));
   if (cycle == 81 && static_cast<int>(call.number(6)) / 10 % 10 == 1)
-    return error(call.offset, "not-supported", "CYCLE81 by the diameter of the centring is not supported; a depth was expected");
-  if (cycle_moves_ > kMaxCycleMoves) return error(call.offset, "cycle", fmt::format("the cycles make more than {} moves", kMaxCycleMoves), "cycle moves");
+    return error(call.offset, "not-supported",
+                 "CYCLE81 by the diameter of the centring is not supported; a depth was expected");
+  if (cycle_moves_ > kMaxCycleMoves)
+    return error(call.offset, "cycle", fmt::format("the cycles make more than {} moves", kMaxCycleMoves),
+                 "cycle moves");
   const auto at = [&](double height) {
     Vec3 p = programmed();
     p[normal] = height;
@@ -157,7 +178,9 @@ void BlockRunner::drill(const CycleCall& call) {
     const std::size_t mpit = cycle == 84 ? 7 : 9, pit = cycle == 84 ? 8 : 10;
     double pitch = std::abs(call.number(pit));
     const int pitch_unit = cycle == 84 ? static_cast<int>(call.number(13)) : 0;
-    pitch = pitch_unit == 2 ? (pitch > 0 ? kMmPerInch / pitch : 0) : pitch_unit == 3 ? pitch * kMmPerInch : pitch * unit;
+    pitch = pitch_unit == 2   ? (pitch > 0 ? kMmPerInch / pitch : 0)
+            : pitch_unit == 3 ? pitch * kMmPerInch
+                              : pitch * unit;
     if (pitch == 0 && call.has(mpit)) pitch = coarse_pitch(std::abs(call.number(mpit)));
     const double speed = cycle == 84 && call.number(10) > 0 ? call.number(10) : state_.spindle_speed_rpm;
     if (pitch > 0 && speed > 0) {
@@ -170,7 +193,9 @@ void BlockRunner::drill(const CycleCall& call) {
       }
     } else if (pitch == 0) {
       if (cycle == 84)
-        report_.warning(call.offset, "cycle", "CYCLE84 has no pitch (PIT or MPIT), which the control refuses; the active F is taken", "CYCLE84 pitch");
+        report_.warning(call.offset, "cycle",
+                        "CYCLE84 has no pitch (PIT or MPIT), which the control refuses; the active F is taken",
+                        "CYCLE84 pitch");
       feed = cycle_feed(0, call, "F");
       out_feed = feed.value_or(0);
     } else {
@@ -184,7 +209,9 @@ void BlockRunner::drill(const CycleCall& call) {
   rapid(level);
   switch (cycle) {
     case 83: {
-      const double first_depth = call.has(6) && call.number(6) > 0 ? reference - call.number(6) * unit : call.has(5) ? call.number(5) * unit : bottom;
+      const double first_depth = call.has(6) && call.number(6) > 0 ? reference - call.number(6) * unit
+                                 : call.has(5)                     ? call.number(5) * unit
+                                                                   : bottom;
       const int amode = static_cast<int>(call.number(19));
       const double dam = call.number(7), least = call.number(13) * unit;
       const bool percent = amode / 100000 % 10 == 2;
@@ -199,7 +226,8 @@ void BlockRunner::drill(const CycleCall& call) {
       double depth = std::clamp(first_depth, bottom, level), stroke = reference - depth;
       if (!(stroke > 1e-6)) stroke = std::max(level - depth, 1e-3);
       if (hole / std::max(std::min(stroke, least > 0 ? least : stroke), 1e-9) > kMaxPecks)
-        return error(call.offset, "cycle", "CYCLE83 would peck more than 100000 times; a larger first depth was expected");
+        return error(call.offset, "cycle",
+                     "CYCLE83 would peck more than 100000 times; a larger first depth was expected");
       feed_to(depth, *feed * frf);
       while (depth > bottom + 1e-9) {
         wait(call.number(8));
@@ -280,24 +308,33 @@ void BlockRunner::mill_thread(const CycleCall& call) {
   const std::string name = name_of(call);
   check_unit();
   prepare_cutting(name.c_str());
-  if (radius_.active && radius_.radius_mm != 0) return error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
+  if (radius_.active && radius_.radius_mm != 0)
+    return error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
   const double unit = unit_mm();
-  const double rtp = call.number(0) * unit, reference = call.number(1) * unit, level = reference + std::abs(call.number(2)) * unit;
+  const double rtp = call.number(0) * unit, reference = call.number(1) * unit,
+               level = reference + std::abs(call.number(2)) * unit;
   const bool by_dpr = call.has(4) && (call.number(4) != 0 || !call.has(3));
   const double bottom = by_dpr ? reference - std::abs(call.number(4)) * unit : call.number(3) * unit;
   const double pitch = std::abs(call.number(7)) * unit, nominal = call.number(5) * unit, core = call.number(6) * unit;
   const bool outside = call.number(10) == 1, clockwise = call.number(9) == 2;
   if (!(pitch > 0) || !(nominal > 0) || !(core > 0) || bottom > level || !call.has(0))
-    return error(call.offset, "cycle", fmt::format("{} needs RTP, a depth below the reference plane, DIATH, KDIAM and PIT", name));
+    return error(call.offset, "cycle",
+                 fmt::format("{} needs RTP, a depth below the reference plane, DIATH, KDIAM and PIT", name));
   const auto feed = cycle_feed(call.number(8), call, "FFR");
   if (!feed) return;
   double cutter = 0;
-  if (const auto tool = tool_offsets_.find(state_.tool); tool != tool_offsets_.end() && edge_ != 0) cutter = tool->second.effective_radius_mm().value_or(0);
+  if (const auto tool = tool_offsets_.find(state_.tool); tool != tool_offsets_.end() && edge_ != 0)
+    cutter = tool->second.effective_radius_mm().value_or(0);
   if (cutter == 0)
-    report_.warning(call.offset, "radius-unknown", fmt::format("no radius is given for tool {}; {} takes 0", state_.tool, name), name);
+    report_.warning(call.offset, "radius-unknown",
+                    fmt::format("no radius is given for tool {}; {} takes 0", state_.tool, name), name);
   const double radius = outside ? core / 2 + cutter : nominal / 2 - cutter;
-  if (!(radius > 0)) return error(call.offset, "cycle", fmt::format("the cutter of {:.3f} mm does not go into the thread of {:.3f} mm", 2 * cutter, nominal));
-  report_.warning(call.offset, "cycle", fmt::format("the ways in and out of {} are taken as semicircles; the control's may differ", name), name + " ways");
+  if (!(radius > 0))
+    return error(call.offset, "cycle",
+                 fmt::format("the cutter of {:.3f} mm does not go into the thread of {:.3f} mm", 2 * cutter, nominal));
+  report_.warning(call.offset, "cycle",
+                  fmt::format("the ways in and out of {} are taken as semicircles; the control's may differ", name),
+                  name + " ways");
   const PlaneAxes axes = axes_of(plane_);
   Vec3 centre = programmed();
   centre[axes.first] = call.number(11) * unit;
@@ -312,13 +349,23 @@ void BlockRunner::mill_thread(const CycleCall& call) {
   const double start = outside ? radius + 2 * std::max(cutter, pitch) : 0;
   const double sign = clockwise ? -1 : 1;
   Vec3 over = place(start, programmed()[axes.normal]);
-  if (programmed()[axes.normal] < rtp) go(CycleStep::Kind::rapid, [&] { Vec3 p = programmed(); p[axes.normal] = rtp; return p; }(), 0, 0);
+  if (programmed()[axes.normal] < rtp)
+    go(
+        CycleStep::Kind::rapid,
+        [&] {
+          Vec3 p = programmed();
+          p[axes.normal] = rtp;
+          return p;
+        }(),
+        0, 0);
   over[axes.normal] = programmed()[axes.normal];
   go(CycleStep::Kind::rapid, over, 0, 0);
   go(CycleStep::Kind::rapid, place(start, level), 0, 0);
   go_round(place(radius, level), place((start + radius) / 2, level), (outside ? -sign : sign) * kPi, *feed);
   const double turns = (level - bottom) / pitch, sweep = sign * 2 * kPi * turns;
-  if (turns > 1000) return error(call.offset, "cycle", fmt::format("{} would make {:.0f} turns; a larger PIT was expected", name, turns));
+  if (turns > 1000)
+    return error(call.offset, "cycle",
+                 fmt::format("{} would make {:.0f} turns; a larger PIT was expected", name, turns));
   Vec3 end = place(0, bottom);
   end[axes.first] += radius * std::cos(sweep);
   end[axes.second] += radius * std::sin(sweep);
@@ -375,12 +422,14 @@ void BlockRunner::run_pattern(const CycleCall& call, const BlockPlace& place, co
         const int c = r % 2 == 0 ? k : columns - 1 - k;
         if (frame_only && r > 0 && r + 1 < rows && c > 0 && c + 1 < columns) continue;
         const double u = c * call.number(3) * unit, v = r * call.number(4) * unit;
-        places.emplace_back(x + u * std::cos(angle) - v * std::sin(angle), y + u * std::sin(angle) + v * std::cos(angle));
+        places.emplace_back(x + u * std::cos(angle) - v * std::sin(angle),
+                            y + u * std::sin(angle) + v * std::cos(angle));
       }
   } else {
     const std::string masks = fmt::format("{:.0f}{:.0f}", call.number(0), call.number(1));
     if (masks.find('2') != std::string::npos)
-      return error(call.offset, "not-supported", "CYCLE802 with incremental places is not supported; absolute ones were expected");
+      return error(call.offset, "not-supported",
+                   "CYCLE802 with incremental places is not supported; absolute ones were expected");
     for (std::size_t i = 2; i + 1 < call.values.size() && i < 20; i += 2)
       if (call.has(i) || call.has(i + 1)) places.emplace_back(call.number(i) * unit, call.number(i + 1) * unit);
   }

@@ -20,13 +20,13 @@ struct OperatorRow {
 };
 
 constexpr OperatorRow kOperators[] = {
-    {0, "==", NodeKind::equal},       {0, "<>", NodeKind::not_equal},    {0, "<=", NodeKind::less_equal},
+    {0, "==", NodeKind::equal},         {0, "<>", NodeKind::not_equal},  {0, "<=", NodeKind::less_equal},
     {0, ">=", NodeKind::greater_equal}, {0, "<", NodeKind::less},        {0, ">", NodeKind::greater},
-    {1, "<<", NodeKind::join},        {2, "OR", NodeKind::logical_or},   {3, "XOR", NodeKind::logical_xor},
-    {4, "AND", NodeKind::logical_and}, {5, "B_OR", NodeKind::bit_or},    {6, "B_XOR", NodeKind::bit_xor},
-    {7, "B_AND", NodeKind::bit_and},  {8, "+", NodeKind::add},           {8, "-", NodeKind::subtract},
-    {9, "*", NodeKind::multiply},     {9, "/", NodeKind::divide},        {9, "DIV", NodeKind::whole_divide},
-    {9, "MOD", NodeKind::modulo},     {9, ":", NodeKind::chain}};
+    {1, "<<", NodeKind::join},          {2, "OR", NodeKind::logical_or}, {3, "XOR", NodeKind::logical_xor},
+    {4, "AND", NodeKind::logical_and},  {5, "B_OR", NodeKind::bit_or},   {6, "B_XOR", NodeKind::bit_xor},
+    {7, "B_AND", NodeKind::bit_and},    {8, "+", NodeKind::add},         {8, "-", NodeKind::subtract},
+    {9, "*", NodeKind::multiply},       {9, "/", NodeKind::divide},      {9, "DIV", NodeKind::whole_divide},
+    {9, "MOD", NodeKind::modulo},       {9, ":", NodeKind::chain}};
 
 }  // namespace
 
@@ -144,8 +144,10 @@ std::uint32_t LineParser::parse_primary() {
   double number = 0;
   if (is_digit(peek()) || peek() == '.') {
     if (!parse_number(number)) fail(begin, "expression", "`.` is no number");
-    return add({.kind = NodeKind::number, .offset = static_cast<std::uint32_t>(begin),
-                .length = static_cast<std::uint32_t>(at_ - begin), .number = number});
+    return add({.kind = NodeKind::number,
+                .offset = static_cast<std::uint32_t>(begin),
+                .length = static_cast<std::uint32_t>(at_ - begin),
+                .number = number});
   }
   if (peek() == '"' || peek() == '\'') return parse_quoted();
   if (take('(')) {
@@ -177,7 +179,8 @@ std::uint32_t LineParser::parse_quoted() {
       content += c;
     }
   }
-  Node node{.kind = NodeKind::number, .offset = static_cast<std::uint32_t>(begin),
+  Node node{.kind = NodeKind::number,
+            .offset = static_cast<std::uint32_t>(begin),
             .length = static_cast<std::uint32_t>(at_ - begin)};
   if (mark == '\'') {
     const char base = content.empty() ? '\0' : upper(content[0]);

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include "base/units.h"
 #include "nc/frames.h"
@@ -60,7 +60,8 @@ void BlockRunner::run_frame_command() {
   const bool additive = row.name.front() == 'A';
   const std::string name(row.name);
   if (radius_.active && radius_.radius_mm != 0) {
-    error(request_.frame_offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
+    error(request_.frame_offset, "cutter-radius",
+          fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
     return;
   }
   const bool any = words_.has_any("XYZ") || words_.has(Extra::rpl);
@@ -88,7 +89,8 @@ void BlockRunner::run_frame_command() {
         break;
       default:
         if (!(slot.value >= 1e-3 && slot.value <= 1e3)) {
-          error(slot.offset, "scaling", fmt::format("{} scales {} by {:g}; 0.001 to 1000 was expected", name, kAxisLetters[axis], slot.value));
+          error(slot.offset, "scaling",
+                fmt::format("{} scales {} by {:g}; 0.001 to 1000 was expected", name, kAxisLetters[axis], slot.value));
           return;
         }
         own.linear(axis, axis) = slot.value;
@@ -107,7 +109,9 @@ void BlockRunner::run_frame_command() {
 void BlockRunner::set_frame_variable(const std::string& name, const std::vector<double>& indexes,
                                      const std::vector<std::string>& index_names, const Value& value,
                                      std::uint32_t offset) {
-  const auto whole_index = [&](std::size_t i) { return i < indexes.size() ? static_cast<int>(std::min(std::max(indexes[i], 0.0), 1e8)) : -1; };
+  const auto whole_index = [&](std::size_t i) {
+    return i < indexes.size() ? static_cast<int>(std::min(std::max(indexes[i], 0.0), 1e8)) : -1;
+  };
   if (name == "$P_PFRAME") {
     if (!value.frame) return error(offset, "type", "$P_PFRAME is a frame; CTRANS, CROT and the like were expected");
     programmable_ = *value.frame;
@@ -129,7 +133,9 @@ void BlockRunner::set_frame_variable(const std::string& name, const std::vector<
       const double angle = std::atan2(m(1, 0), m(0, 0));
       if ((m - rotation_in(Plane::xy, angle)).cwiseAbs().maxCoeff() > 1e-9)
         return error(offset, "not-supported",
-                     fmt::format("{} with a rotation about X or Y, a mirror image or a scale is not supported; ROT, MIRROR or SCALE in the program was expected", name));
+                     fmt::format("{} with a rotation about X or Y, a mirror image or a scale is not supported; ROT, "
+                                 "MIRROR or SCALE in the program was expected",
+                                 name));
       warn();
       work.value_mm = value.frame->shift_mm;
       work.rotation_rad = angle;
@@ -137,7 +143,8 @@ void BlockRunner::set_frame_variable(const std::string& name, const std::vector<
       return update_frame();
     }
     const std::size_t at = name == "$P_IFRAME" ? 0 : 1;
-    const std::string axis = at < index_names.size() ? index_names[at] : "", what = at + 1 < index_names.size() ? index_names[at + 1] : "";
+    const std::string axis = at < index_names.size() ? index_names[at] : "",
+                      what = at + 1 < index_names.size() ? index_names[at + 1] : "";
     const int which = axis == "X" ? 0 : axis == "Y" ? 1 : axis == "Z" ? 2 : -1;
     if (which >= 0 && what == "TR" && !value.text) {
       warn();
@@ -149,18 +156,22 @@ void BlockRunner::set_frame_variable(const std::string& name, const std::vector<
       return update_frame();
     }
     if (what == "FI" && !value.text && value.number == 0) return;
-    return error(offset, "not-supported",
-                 fmt::format("this part of {} is not supported; [n,X,TR], [n,Z,RT] or a whole frame was expected", name));
+    return error(
+        offset, "not-supported",
+        fmt::format("this part of {} is not supported; [n,X,TR], [n,Z,RT] or a whole frame was expected", name));
   }
   if ((name == "$TC_DP6" || name == "$TC_DP3") && !value.text) {
     ToolOffset& tool = tool_offsets_[whole_index(0)];
     (name == "$TC_DP6" ? tool.radius_mm : tool.length_mm) = value.number * unit_mm();
     return update_tool_length();
   }
-  if (name == "$P_UBFR" || name == "$P_CHBFR" || name == "$P_BFRAME" || name == "$P_CHBFRAME" || name == "$P_ACTFRAME" || name == "$P_SETFR" || name == "$P_PARTFR" ||
-      name == "$P_TOOLFR" || name == "$P_WPFR" || name == "$P_CYCFR" || name == "$P_WPFRAME" || name == "$P_TOOLFRAME" || name == "$P_PARTFRAME" || name == "$P_SETFRAME") {
+  if (name == "$P_UBFR" || name == "$P_CHBFR" || name == "$P_BFRAME" || name == "$P_CHBFRAME" ||
+      name == "$P_ACTFRAME" || name == "$P_SETFR" || name == "$P_PARTFR" || name == "$P_TOOLFR" || name == "$P_WPFR" ||
+      name == "$P_CYCFR" || name == "$P_WPFRAME" || name == "$P_TOOLFRAME" || name == "$P_PARTFRAME" ||
+      name == "$P_SETFRAME") {
     if (value.frame && value.frame->is_identity()) return;
-    return error(offset, "not-supported", fmt::format("setting {} is not supported; TRANS, ROT or $P_UIFR was expected", name));
+    return error(offset, "not-supported",
+                 fmt::format("setting {} is not supported; TRANS, ROT or $P_UIFR was expected", name));
   }
   report_.warning(offset, "no-effect", fmt::format("{} is set without effect", name), name);
 }
@@ -171,13 +182,16 @@ void BlockRunner::set_frame_variable(const std::string& name, const std::vector<
 /// first, second and third (1: X, 2: Y, 3: Z). _ST: digit 1 (ones): a new plane (0) or one that adds (1).
 void BlockRunner::swivel(const CycleCall& call, const BlockPlace&) {
   const std::size_t at = call.offset;
-  if (radius_.active && radius_.radius_mm != 0) return error(at, "cutter-radius", fmt::format("CYCLE800 under G{}; G40 was expected before", radius_.g));
+  if (radius_.active && radius_.radius_mm != 0)
+    return error(at, "cutter-radius", fmt::format("CYCLE800 under G{}; G40 was expected before", radius_.g));
   if (state_.tip_control != TipControl::off)
     return error(at, "tilted-frame", "CYCLE800 under TRAORI; TRAFOOF was expected before");
-  const bool back = call.text(1) == "0" || std::ranges::none_of(call.values, [](const auto& v) { return v.has_value(); });
+  const bool back =
+      call.text(1) == "0" || std::ranges::none_of(call.values, [](const auto& v) { return v.has_value(); });
   const int st = static_cast<int>(call.number(2)), mode = static_cast<int>(call.number(3));
   const bool additive = st % 10 == 1 && swivelled_;
-  const Vec3 before_mm(call.number(4), call.number(5), call.number(6)), angle(call.number(7), call.number(8), call.number(9)),
+  const Vec3 before_mm(call.number(4), call.number(5), call.number(6)),
+      angle(call.number(7), call.number(8), call.number(9)),
       behind_mm(call.number(10), call.number(11), call.number(12));
   Affine own;
   own.shift_mm = before_mm * unit_mm();
@@ -189,9 +203,14 @@ void BlockRunner::swivel(const CycleCall& call, const BlockPlace&) {
         if (axis >= 0) own.linear = own.linear * about(axis, angle[i]);
       }
     } else if (angle != Vec3::Zero()) {
-      return error(at, "not-supported",
-                   fmt::format("CYCLE800 with {} (mode {}) is not supported; angles axis by axis (mode 57, 27, 39 ...) were expected",
-                               kind == 1 ? "solid angles" : kind == 2 ? "projection angles" : "rotary axes given directly", mode));
+      return error(
+          at, "not-supported",
+          fmt::format(
+              "CYCLE800 with {} (mode {}) is not supported; angles axis by axis (mode 57, 27, 39 ...) were expected",
+              kind == 1   ? "solid angles"
+              : kind == 2 ? "projection angles"
+                          : "rotary axes given directly",
+              mode));
     }
     own.shift_mm += own.linear * behind_mm * unit_mm();
   }
@@ -202,11 +221,12 @@ void BlockRunner::swivel(const CycleCall& call, const BlockPlace&) {
     swivelled_ = additive ? swivelled_->then_inside(own) : own;
   const bool tilted = swivelled_ && swivelled_->linear != Eigen::Matrix3d::Identity();
   if (tilted && options_.rotary_axes.empty()) {
-    error(at, "not-read",
-          fmt::format("CYCLE800 (plane swivelled by {:g}, {:g}, {:g} degrees) is read on a machine with [kinematics], by "
-                      "camber check, time, feed, fit-feed, predict, compensate and post",
-                      angle.x(), angle.y(), angle.z()),
-          "CYCLE800");
+    error(
+        at, "not-read",
+        fmt::format("CYCLE800 (plane swivelled by {:g}, {:g}, {:g} degrees) is read on a machine with [kinematics], by "
+                    "camber check, time, feed, fit-feed, predict, compensate and post",
+                    angle.x(), angle.y(), angle.z()),
+        "CYCLE800");
     swivelled_.reset();
     return update_frame();
   }
@@ -228,7 +248,8 @@ void BlockRunner::swivel(const CycleCall& call, const BlockPlace&) {
   if (!tilted) {  // back: the rotary axes go to zero
     target.is_direction = false;
     target.end = Vec3::Zero();
-    for (const RotaryOption& axis : options_.rotary_axes) target.given = static_cast<std::uint8_t>(target.given | 1U << (axis.letter - 'A'));
+    for (const RotaryOption& axis : options_.rotary_axes)
+      target.given = static_cast<std::uint8_t>(target.given | 1U << (axis.letter - 'A'));
   }
   rotary_target_ = target;
   aligned_ = tilted;

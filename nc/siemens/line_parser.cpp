@@ -73,7 +73,8 @@ void LineParser::expect(char c, std::string_view what) {
 }
 
 void LineParser::expect_end() {
-  if (!at_end()) fail(at_, "syntax", fmt::format("{} behind the statement; the end of the block was expected", quoted(at_)));
+  if (!at_end())
+    fail(at_, "syntax", fmt::format("{} behind the statement; the end of the block was expected", quoted(at_)));
 }
 
 std::string LineParser::read_name() {
@@ -201,9 +202,11 @@ void LineParser::parse_address(Item item) {
 void LineParser::parse_value(Item& item) {
   skip_blanks();
   const std::string name = name_ahead();
-  static const std::unordered_map<std::string, Dimension> kDimensions = {
-      {"AC", Dimension::absolute}, {"IC", Dimension::incremental}, {"DC", Dimension::nearest},
-      {"ACP", Dimension::positive}, {"ACN", Dimension::negative}};
+  static const std::unordered_map<std::string, Dimension> kDimensions = {{"AC", Dimension::absolute},
+                                                                         {"IC", Dimension::incremental},
+                                                                         {"DC", Dimension::nearest},
+                                                                         {"ACP", Dimension::positive},
+                                                                         {"ACN", Dimension::negative}};
   const auto found = kDimensions.find(name);
   std::size_t behind = at_ + name.size();
   while (behind < end_ && is_blank(text_[behind])) ++behind;
@@ -246,7 +249,8 @@ void LineParser::parse_indexes(Item& item) {
 void LineParser::parse_assignment(Item item) {
   item.kind = ItemKind::assign;
   parse_indexes(item);
-  if (!take('=') || peek() == '=') fail(at_, "syntax", fmt::format("{} behind {}; `=` was expected", quoted(at_), tree_.names[item.name]));
+  if (!take('=') || peek() == '=')
+    fail(at_, "syntax", fmt::format("{} behind {}; `=` was expected", quoted(at_), tree_.names[item.name]));
   skip_blanks();
   const std::string name = name_ahead();
   if (name == "SET" || name == "REP") {
@@ -366,8 +370,10 @@ void LineParser::parse_letter() {
     fail(begin, "no-number", fmt::format("{} has no number; a number, or = and an expression, was expected", letter));
   item.constant = true;
   item.number = minus ? -number : number;
-  item.value = add({.kind = NodeKind::number, .offset = static_cast<std::uint32_t>(number_at),
-                    .length = static_cast<std::uint32_t>(at_ - number_at), .number = item.number});
+  item.value = add({.kind = NodeKind::number,
+                    .offset = static_cast<std::uint32_t>(number_at),
+                    .length = static_cast<std::uint32_t>(at_ - number_at),
+                    .number = item.number});
   if (letter == 'M' && take('(')) parse_list(')');  // a function of the machine with arguments
   item.length = static_cast<std::uint32_t>(at_ - begin);
   out_.items.push_back(item);
@@ -555,7 +561,8 @@ void LineParser::parse_repeat(const std::string& name, std::size_t begin) {
     if (!in_name(peek()) || is_digit(peek()))
       fail(at_, "syntax", fmt::format("{} behind {}; a label was expected", quoted(at_), name));
     std::string label = read_name();
-    if (label.size() > 1 && label[0] == 'N' && is_digit(label[1])) label.erase(1, std::min(label.find_first_not_of('0', 1), label.size() - 1) - 1);
+    if (label.size() > 1 && label[0] == 'N' && is_digit(label[1]))
+      label.erase(1, std::min(label.find_first_not_of('0', 1), label.size() - 1) - 1);
     out_.labels.push_back(names_.index(label));
     if (out_.labels.size() > 2) fail(begin, "syntax", fmt::format("{} with more than two labels", name));
   }
@@ -564,8 +571,9 @@ void LineParser::parse_repeat(const std::string& name, std::size_t begin) {
 bool LineParser::parse_type(ValueType& type) {
   skip_blanks();
   static const std::unordered_map<std::string, ValueType> kTypes = {
-      {"REAL", ValueType::real},   {"INT", ValueType::integer}, {"BOOL", ValueType::boolean}, {"CHAR", ValueType::integer},
-      {"STRING", ValueType::text}, {"AXIS", ValueType::axis},   {"FRAME", ValueType::frame}};
+      {"REAL", ValueType::real},    {"INT", ValueType::integer}, {"BOOL", ValueType::boolean},
+      {"CHAR", ValueType::integer}, {"STRING", ValueType::text}, {"AXIS", ValueType::axis},
+      {"FRAME", ValueType::frame}};
   const std::string name = name_ahead();
   const auto found = kTypes.find(name);
   if (found == kTypes.end()) return false;
@@ -589,7 +597,8 @@ Declared LineParser::parse_declared(ValueType type, bool parameter) {
     fail(at_, "syntax", fmt::format("{} in a declaration; a name was expected", quoted(at_)));
   const std::string name_text = read_name();
   if (name_text.size() == 1)
-    fail(out.offset, "variable", fmt::format("{} is an address; a name of two letters or more was expected", name_text));
+    fail(out.offset, "variable",
+         fmt::format("{} is an address; a name of two letters or more was expected", name_text));
   out.name = names_.index(name_text);
   if (take('[')) {
     do {
@@ -622,8 +631,8 @@ void LineParser::parse_definition(std::size_t begin) {
   set_flow(FlowKind::declaration, begin);
   ValueType type{};
   skip_blanks();
-  for (std::string name = name_ahead(); name == "NCK" || name == "CHAN" || name == "SYNR" || name == "SYNW" ||
-                                        name == "SYNRW" || name == "APX";
+  for (std::string name = name_ahead();
+       name == "NCK" || name == "CHAN" || name == "SYNR" || name == "SYNW" || name == "SYNRW" || name == "APX";
        skip_blanks(), name = name_ahead())
     at_ += name.size();
   if (!parse_type(type))
@@ -645,7 +654,8 @@ void LineParser::parse_procedure(std::size_t begin) {
       bool by_reference = false;
       if (name_ahead() == "VAR") by_reference = true, at_ += 3;
       ValueType type{};
-      if (!parse_type(type)) fail(at_, "syntax", fmt::format("{} in the parameters of PROC; a type was expected", quoted(at_)));
+      if (!parse_type(type))
+        fail(at_, "syntax", fmt::format("{} in the parameters of PROC; a type was expected", quoted(at_)));
       out_.declared.push_back(parse_declared(type, true));
       out_.declared.back().by_reference = by_reference;
     } while (take(','));
@@ -655,7 +665,9 @@ void LineParser::parse_procedure(std::size_t begin) {
     const std::size_t at = at_;
     const std::string name = read_name();
     if (name == "SAVE") out_.saves = true;
-    if (name.empty()) fail(at, "syntax", fmt::format("{} behind PROC; SAVE, DISPLOF, SBLOF or the end of the block was expected", quoted(at)));
+    if (name.empty())
+      fail(at, "syntax",
+           fmt::format("{} behind PROC; SAVE, DISPLOF, SBLOF or the end of the block was expected", quoted(at)));
   }
 }
 

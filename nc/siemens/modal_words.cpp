@@ -45,13 +45,15 @@ void BlockRunner::add_plain(std::span<const Word> words) {
   for (const Word& w : words) {
     if (w.letter == 'N') continue;
     if (w.letter == 'G' || w.letter == 'M') {
-      const int number = w.value >= 0 && w.value < 1e6 && w.value == std::floor(w.value) ? static_cast<int>(w.value) : -1;
+      const int number =
+          w.value >= 0 && w.value < 1e6 && w.value == std::floor(w.value) ? static_cast<int>(w.value) : -1;
       (w.letter == 'G' ? words_.g : words_.m).push_back({number, w.offset, 1, w.value});
       continue;
     }
     Slot& slot = w.letter == 'R' ? words_.set(Extra::cr) : words_.set(w.letter);
     if (slot.given)
-      error(w.offset, "word-twice", fmt::format("{} twice in one block; once was expected", w.letter == 'R' ? "CR" : std::string(1, w.letter)));
+      error(w.offset, "word-twice",
+            fmt::format("{} twice in one block; once was expected", w.letter == 'R' ? "CR" : std::string(1, w.letter)));
     slot = {true, false, Dimension::as_modal, w.value, w.offset};
   }
 }
@@ -86,7 +88,8 @@ void BlockRunner::set_command(const WordRow& row, std::uint32_t offset) {
     case Does::mirror:
     case Does::amirror:
       if (request_.frame)
-        error(offset, "modal-group", fmt::format("{} and {} in one block; one of them was expected", request_.frame->name, row.name));
+        error(offset, "modal-group",
+              fmt::format("{} and {} in one block; one of them was expected", request_.frame->name, row.name));
       request_.frame = &row;
       request_.frame_offset = offset;
       return;
@@ -169,10 +172,14 @@ void BlockRunner::read_g_codes() {
       unit_given_ = true;
       change_state();
       if (g == 20 || g == 21)
-        report_.warning(code.offset, "iso-word", fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read as G{}", g, g == 20 ? 700 : 710), "G20");
+        report_.warning(code.offset, "iso-word",
+                        fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read as G{}", g,
+                                    g == 20 ? 700 : 710),
+                        "G20");
       if (g == 70 && !options_.inch)
         report_.warning(code.offset, "feed-unit",
-                        "F under G70 counts in the basic unit of the control, which is not known; inch per minute is assumed (G700 says it)",
+                        "F under G70 counts in the basic unit of the control, which is not known; inch per minute is "
+                        "assumed (G700 says it)",
                         "G70");
     } else if (g == 90 || g == 91) {
       absolute_ = g == 90;
@@ -196,7 +203,8 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     request_.motion_offset = code.offset;
   };
   const auto refuse = [&](std::string_view what, std::string_view instead) {
-    error(code.offset, "not-supported", fmt::format("G{} ({}) is not supported; {} was expected", g, what, instead), fmt::format("G{}", g));
+    error(code.offset, "not-supported", fmt::format("G{} ({}) is not supported; {} was expected", g, what, instead),
+          fmt::format("G{}", g));
   };
   const auto set_blending = [&](int number) {
     blending_ = number;
@@ -206,53 +214,163 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     set_contouring();
   };
   switch (g) {
-    case 0: return set_motion(Motion::rapid);
-    case 1: return set_motion(Motion::linear);
-    case 2: return set_motion(Motion::clockwise);
-    case 3: return set_motion(Motion::counter_clockwise);
-    case 4: request_.dwell = true; return;
-    case 9: request_.exact_stop = true; return;
-    case 17: case 18: case 19: case 20: case 21: case 70: case 71: case 700: case 710: case 90: case 91:
+    case 0:
+      return set_motion(Motion::rapid);
+    case 1:
+      return set_motion(Motion::linear);
+    case 2:
+      return set_motion(Motion::clockwise);
+    case 3:
+      return set_motion(Motion::counter_clockwise);
+    case 4:
+      request_.dwell = true;
       return;
-    case 25: case 26: request_.limits = true; return;
-    case 33: case 34: case 35: return refuse("thread cutting", "a tapping cycle");
-    case 331: return set_motion(Motion::tapping_in);
-    case 332: return set_motion(Motion::tapping_out);
-    case 40: return end_radius();
-    case 41: case 42: return read_radius_code(code);
-    case 53: case 153: request_.machine_frame = true; return;
-    case 58: case 59: return refuse("programmable shift", "TRANS or ATRANS");
-    case 60: case 64: return set_blending(g);
-    case 601: case 602: case 603: return;
-    case 641: case 642: case 643: case 644: case 645: case 646: return set_blending(g);
-    case 62: case 621: return;
-    case 63: return set_motion(Motion::linear);
-    case 74: case 75:
+    case 9:
+      request_.exact_stop = true;
+      return;
+    case 17:
+    case 18:
+    case 19:
+    case 20:
+    case 21:
+    case 70:
+    case 71:
+    case 700:
+    case 710:
+    case 90:
+    case 91:
+      return;
+    case 25:
+    case 26:
+      request_.limits = true;
+      return;
+    case 33:
+    case 34:
+    case 35:
+      return refuse("thread cutting", "a tapping cycle");
+    case 331:
+      return set_motion(Motion::tapping_in);
+    case 332:
+      return set_motion(Motion::tapping_out);
+    case 40:
+      return end_radius();
+    case 41:
+    case 42:
+      return read_radius_code(code);
+    case 53:
+    case 153:
+      request_.machine_frame = true;
+      return;
+    case 58:
+    case 59:
+      return refuse("programmable shift", "TRANS or ATRANS");
+    case 60:
+    case 64:
+      return set_blending(g);
+    case 601:
+    case 602:
+    case 603:
+      return;
+    case 641:
+    case 642:
+    case 643:
+    case 644:
+    case 645:
+    case 646:
+      return set_blending(g);
+    case 62:
+    case 621:
+      return;
+    case 63:
+      return set_motion(Motion::linear);
+    case 74:
+    case 75:
       request_.fixed_point = true;
       return;
-    case 93: return set_feed_mode(FeedMode::inverse_time);
-    case 94: return set_feed_mode(FeedMode::per_minute);
-    case 95: return set_feed_mode(FeedMode::per_revolution);
-    case 931: return refuse("feed by duration", "G94");
-    case 942: case 952: return set_feed_mode(g == 942 ? FeedMode::per_minute : FeedMode::per_revolution);
-    case 96: case 961: case 962: return refuse("constant cutting speed", "G97 with S");
-    case 97: case 971: case 972: case 973: return;
-    case 110: case 111: case 112: request_.pole = g; return;
-    case 140: case 141: case 142: case 143: case 340: case 341: return;
-    case 147: case 148: case 247: case 248: case 347: case 348:
+    case 93:
+      return set_feed_mode(FeedMode::inverse_time);
+    case 94:
+      return set_feed_mode(FeedMode::per_minute);
+    case 95:
+      return set_feed_mode(FeedMode::per_revolution);
+    case 931:
+      return refuse("feed by duration", "G94");
+    case 942:
+    case 952:
+      return set_feed_mode(g == 942 ? FeedMode::per_minute : FeedMode::per_revolution);
+    case 96:
+    case 961:
+    case 962:
+      return refuse("constant cutting speed", "G97 with S");
+    case 97:
+    case 971:
+    case 972:
+    case 973:
+      return;
+    case 110:
+    case 111:
+    case 112:
+      request_.pole = g;
+      return;
+    case 140:
+    case 141:
+    case 142:
+    case 143:
+    case 340:
+    case 341:
+      return;
+    case 147:
+    case 148:
+    case 247:
+    case 248:
+    case 347:
+    case 348:
       return refuse("smooth approach and retraction", "G1 to G3");
-    case 290: return;
-    case 291: return refuse("ISO mode", "a program in ISO G code");
-    case 450: case 451: return;  // DISC: corners are arcs; G451 lines
-    case 460: case 461: case 462: return;
-    case 500: return set_work_offset(500);
-    case 810: case 811: case 812: case 813: case 814: case 815: case 816: case 817: case 818: case 819:
-    case 820: case 821: case 822: case 823: case 824: case 825: case 826: case 827: case 828: case 829:
-      return report_.warning(code.offset, "no-effect", fmt::format("G{} of the machine's maker is read without effect", g), fmt::format("G{}", g));
-    case 43: case 44: case 49: case 80:
+    case 290:
+      return;
+    case 291:
+      return refuse("ISO mode", "a program in ISO G code");
+    case 450:
+    case 451:
+      return;  // DISC: corners are arcs; G451 lines
+    case 460:
+    case 461:
+    case 462:
+      return;
+    case 500:
+      return set_work_offset(500);
+    case 810:
+    case 811:
+    case 812:
+    case 813:
+    case 814:
+    case 815:
+    case 816:
+    case 817:
+    case 818:
+    case 819:
+    case 820:
+    case 821:
+    case 822:
+    case 823:
+    case 824:
+    case 825:
+    case 826:
+    case 827:
+    case 828:
+    case 829:
+      return report_.warning(code.offset, "no-effect",
+                             fmt::format("G{} of the machine's maker is read without effect", g),
+                             fmt::format("G{}", g));
+    case 43:
+    case 44:
+    case 49:
+    case 80:
       words_.set('H').given = false;
       return report_.warning(code.offset, "iso-word",
-                             fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read without effect (tool lengths come with D)", g),
+                             fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read without "
+                                         "effect (tool lengths come with D)",
+                                         g),
                              fmt::format("G{}", g));
     default:
       break;
@@ -312,7 +430,8 @@ void BlockRunner::read_spindle_speed() {
   state_.spindle_speed_rpm = std::min(s.value, options_.max_spindle_speed_rpm);
   if (s.value > options_.max_spindle_speed_rpm)
     report_.warning(s.offset, "spindle-speed",
-                    fmt::format("S{:g} is above the machine's largest spindle speed, {:g} rpm, at which it turns", s.value, options_.max_spindle_speed_rpm),
+                    fmt::format("S{:g} is above the machine's largest spindle speed, {:g} rpm, at which it turns",
+                                s.value, options_.max_spindle_speed_rpm),
                     fmt::format("S{:g}", s.value));
   change_state();
   add_event(EventKind::spindle_speed, s.value);
@@ -357,7 +476,8 @@ void BlockRunner::read_edge() {
   const Slot& d = words_.of('D');
   if (!d.given) return;
   if (d.value < 0 || d.value != std::floor(d.value) || d.value > 32000) {
-    error(d.offset, "tool", fmt::format("D{:g} is no cutting edge; a whole number of zero or more was expected", d.value));
+    error(d.offset, "tool",
+          fmt::format("D{:g} is no cutting edge; a whole number of zero or more was expected", d.value));
     return;
   }
   edge_ = static_cast<int>(d.value);
@@ -389,7 +509,8 @@ bool BlockRunner::read_m_codes_before() {
         if (!main) break;
         state_.spindle = code.number == 3 ? SpindleDirection::clockwise : SpindleDirection::counter_clockwise;
         change_state();
-        add_event(code.number == 3 ? EventKind::spindle_clockwise : EventKind::spindle_counter_clockwise, state_.spindle_speed_rpm);
+        add_event(code.number == 3 ? EventKind::spindle_clockwise : EventKind::spindle_counter_clockwise,
+                  state_.spindle_speed_rpm);
         break;
       case 6:
         change_tool(code.offset);
@@ -403,14 +524,21 @@ bool BlockRunner::read_m_codes_before() {
       case 19:
         add_event(EventKind::spindle_orient, 0);
         break;
-      case 0: case 1: case 2: case 5: case 9: case 17: case 30:
+      case 0:
+      case 1:
+      case 2:
+      case 5:
+      case 9:
+      case 17:
+      case 30:
         break;
       case 60:
         add_event(EventKind::pallet, 60);
         break;
       default: {
         if (code.number < 0) {
-          error(code.offset, "unknown-m", fmt::format("M{:g} is no M function; a whole number was expected", code.value));
+          error(code.offset, "unknown-m",
+                fmt::format("M{:g} is no M function; a whole number was expected", code.value));
           break;
         }
         add_event(EventKind::m_code, code.number);
@@ -456,7 +584,8 @@ bool BlockRunner::read_m_codes_after(bool& ends_subprogram) {
 }
 
 void BlockRunner::add_event(EventKind kind, double value) {
-  out_.events.push_back({value, place_of_block_.called_from, static_cast<std::uint32_t>(out_.moves.size()), kind, false});
+  out_.events.push_back(
+      {value, place_of_block_.called_from, static_cast<std::uint32_t>(out_.moves.size()), kind, false});
 }
 
 /// Letters that belong to no axis or function of a milling machine.
@@ -467,17 +596,21 @@ void BlockRunner::check_letters() {
   }
   for (const char letter : std::string_view("UVWQE")) {
     if (!words_.has(letter)) continue;
-    error(words_.of(letter).offset, "axis", fmt::format("{} is not an axis that Camber knows; X, Y, Z, A, B or C was expected", letter), std::string(1, letter));
+    error(words_.of(letter).offset, "axis",
+          fmt::format("{} is not an axis that Camber knows; X, Y, Z, A, B or C was expected", letter),
+          std::string(1, letter));
   }
 }
 
 void BlockRunner::finish() {
   if (corner_.waits && !corner_.modal && !report_.has_errors())
-    report_.error(corner_.offset, "corner-word", fmt::format("{} is not followed by a further move; G1, G2 or G3 was expected", corner_.text));
+    report_.error(corner_.offset, "corner-word",
+                  fmt::format("{} is not followed by a further move; G1, G2 or G3 was expected", corner_.text));
   if (radius_.active) {
     const Radius radius = radius_;
     end_radius();
-    const std::string message = fmt::format("G{} is never cancelled; G40 with a straight move off the contour was expected before the end", radius.g);
+    const std::string message = fmt::format(
+        "G{} is never cancelled; G40 with a straight move off the contour was expected before the end", radius.g);
     if (radius.radius_mm != 0 && !report_.has_errors())
       report_.error(radius.offset, "cutter-radius", message);
     else if (radius.radius_mm == 0)
@@ -492,7 +625,8 @@ void BlockRunner::finish() {
 // --- SAVE, system variables
 
 std::shared_ptr<const BlockRunner::Saved> BlockRunner::saved_modes() const {
-  return std::make_shared<const Saved>(Saved{motion_, plane_, absolute_, state_.inch, state_.feed_mode, programmable_, state_.work_offset});
+  return std::make_shared<const Saved>(
+      Saved{motion_, plane_, absolute_, state_.inch, state_.feed_mode, programmable_, state_.work_offset});
 }
 
 void BlockRunner::restore(const Saved& saved) {
@@ -519,7 +653,8 @@ std::optional<Value> BlockRunner::system_value(const std::string& name, const st
       if (place_[static_cast<std::size_t>(which)] != AxisPlace::known) return std::nullopt;
       return number(programmed()[which] / unit_mm());
     }
-    if (axis.size() == 1 && rotary_axis(axis[0]) && angles_unknown_ == 0) return number(deg_from_rad(rotary_rad_[axis[0] - 'A']));
+    if (axis.size() == 1 && rotary_axis(axis[0]) && angles_unknown_ == 0)
+      return number(deg_from_rad(rotary_rad_[axis[0] - 'A']));
     return std::nullopt;
   }
   if (name == "$P_F") {
@@ -529,13 +664,17 @@ std::optional<Value> BlockRunner::system_value(const std::string& name, const st
                                                                  : *feed_ * 60);
   }
   if (name == "$P_S") return number(state_.programmed_spindle_speed_rpm);
-  if (name == "$P_SDIR") return number(state_.spindle == SpindleDirection::clockwise ? 3 : state_.spindle == SpindleDirection::stopped ? 5 : 4);
+  if (name == "$P_SDIR")
+    return number(state_.spindle == SpindleDirection::clockwise ? 3
+                  : state_.spindle == SpindleDirection::stopped ? 5
+                                                                : 4);
   if (name == "$P_MSNUM") return number(main_spindle_);
   if (name == "$P_TOOLNO") return number(state_.tool);
   if (name == "$P_TOOLP") return number(std::max(next_tool_, 0));
   if (name == "$P_TOOL") return number(edge_);
-  if (name == "$P_ISTEST" || name == "$P_SEARCH" || name == "$P_SIM" || name == "$P_DRYRUN" || name == "$P_SEARCHL" || name == "$AC_PROG" ||
-      name == "$P_SIMU" || name == "$P_SEARCH1" || name == "$P_SEARCH_S" || name == "$P_TRAFO_ACTIVE")
+  if (name == "$P_ISTEST" || name == "$P_SEARCH" || name == "$P_SIM" || name == "$P_DRYRUN" || name == "$P_SEARCHL" ||
+      name == "$AC_PROG" || name == "$P_SIMU" || name == "$P_SEARCH1" || name == "$P_SEARCH_S" ||
+      name == "$P_TRAFO_ACTIVE")
     return number(0);
   const auto tool_value = [&](int tool, bool radius) -> std::optional<Value> {
     const auto found = tool_offsets_.find(tool);
@@ -555,7 +694,8 @@ std::optional<Value> BlockRunner::system_value(const std::string& name, const st
     if (group == 7) return number(!radius_.active ? 1 : radius_.g == 41 ? 2 : 3);
     if (group == 13) return number(state_.inch ? 1 : 2);
     if (group == 14) return number(absolute_ ? 1 : 2);
-    if (group == 15 && state_.feed_mode != FeedMode::inverse_time) return number(state_.feed_mode == FeedMode::per_minute ? 2 : 3);
+    if (group == 15 && state_.feed_mode != FeedMode::inverse_time)
+      return number(state_.feed_mode == FeedMode::per_minute ? 2 : 3);
     return std::nullopt;
   }
   if (name == "$P_PFRAME") {

@@ -90,14 +90,16 @@ Move& BlockRunner::add_move(MoveKind kind, const Vec3& end_mm) {
 void BlockRunner::check_unit() {
   if (unit_given_) return;
   unit_given_ = true;
-  report_.warning(words_.offset(), "unit-missing",
-                  "the program has moves before G70, G71, G700 or G710 says which unit it is in; millimetres are assumed");
+  report_.warning(
+      words_.offset(), "unit-missing",
+      "the program has moves before G70, G71, G700 or G710 says which unit it is in; millimetres are assumed");
 }
 
 /// A coordinate in program millimetres.
 double BlockRunner::axis_value(const Slot& slot, double start, double unit) const {
   const double value = slot.value * unit;
-  const bool incremental = slot.dimension == Dimension::incremental || (slot.dimension == Dimension::as_modal && !absolute_);
+  const bool incremental =
+      slot.dimension == Dimension::incremental || (slot.dimension == Dimension::as_modal && !absolute_);
   return incremental ? start + value : value;
 }
 
@@ -124,11 +126,12 @@ Vec3 BlockRunner::target_in_program() {
     const int given = first ? axes.first : axes.second, open = first ? axes.second : axes.first;
     if (first == second)
       error(words_.of(Extra::ang).offset, "line-angle",
-            fmt::format("ANG in a block with {} of {} and {} is not supported; one of them was expected", first ? "both" : "none",
-                        kAxisLetters[axes.first], kAxisLetters[axes.second]));
+            fmt::format("ANG in a block with {} of {} and {} is not supported; one of them was expected",
+                        first ? "both" : "none", kAxisLetters[axes.first], kAxisLetters[axes.second]));
     else if (std::abs(across) < 1e-6)
       error(words_.of(Extra::ang).offset, "line-angle",
-            fmt::format("a line at {:g} degrees does not lead to another {}", words_.of(Extra::ang).value, kAxisLetters[given]));
+            fmt::format("a line at {:g} degrees does not lead to another {}", words_.of(Extra::ang).value,
+                        kAxisLetters[given]));
     else
       end[open] = start[open] + (end[given] - start[given]) * along / across;
   }
@@ -139,7 +142,6 @@ Vec3 BlockRunner::target_in_program() {
 void BlockRunner::keep_last_move() {
   for (std::size_t m = out_.moves.size(); m-- > 0;) {
     if (out_.moves[m].kind == MoveKind::dwell) continue;
-    out_.moves[m].end_fixed |= out_.moves[m].editable;
     out_.moves[m].editable = false;
     return;
   }
@@ -228,25 +230,30 @@ void BlockRunner::dwell() {
   } else {
     return error(words_.offset(), "dwell", "G4 has no time; F in seconds or S in turns was expected");
   }
-  if (!(seconds >= 0)) return error(words_.offset(), "dwell", fmt::format("a dwell of {:g} s is negative; zero or more was expected", seconds));
+  if (!(seconds >= 0))
+    return error(words_.offset(), "dwell",
+                 fmt::format("a dwell of {:g} s is negative; zero or more was expected", seconds));
   add_move(MoveKind::dwell, position_mm_).dwell_s = seconds;
 }
 
 void BlockRunner::move() {
   const bool axes = words_.has_any("XYZ") || words_.has(Extra::ap) || words_.has(Extra::rp);
   const bool arc = motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise;
-  const bool of_arc = words_.has_any("IJK") || words_.has(Extra::cr) || words_.has(Extra::ar) || words_.has(Extra::turn);
+  const bool of_arc =
+      words_.has_any("IJK") || words_.has(Extra::cr) || words_.has(Extra::ar) || words_.has(Extra::turn);
   if (arc && (axes || of_arc)) return move_on_arc();
   if (arc && rotary_target_) {
     error(words_.offset(), "arc", "a rotary axis alone under G2 or G3; G0 or G1 was expected");
     return;
   }
-  if (motion_ == Motion::through_point && (axes || words_.has(Extra::i1) || words_.has(Extra::j1) || words_.has(Extra::k1)))
+  if (motion_ == Motion::through_point &&
+      (axes || words_.has(Extra::i1) || words_.has(Extra::j1) || words_.has(Extra::k1)))
     return move_through_point();
   if (motion_ == Motion::tangential && axes) return move_tangentially();
   if (axes || rotary_target_) {
     if (of_arc && motion_ <= Motion::linear && !words_.has(Extra::turn))
-      report_.warning(words_.offset(), "unused-word", "I, J, K or CR in a block that is no arc is not used", "unused centre");
+      report_.warning(words_.offset(), "unused-word", "I, J, K or CR in a block that is no arc is not used",
+                      "unused centre");
     move_on_line();
   }
 }
@@ -263,7 +270,8 @@ void BlockRunner::move_on_line() {
     const double pitch = std::abs(words_.of(letter).value) * unit_mm();
     editable_ = false;
     if (!(pitch > 0 && state_.spindle_speed_rpm > 0)) {
-      error(words_.offset(), "feed-per-turn", fmt::format("G331 and G332 need a pitch ({}) and a spindle speed (S)", letter));
+      error(words_.offset(), "feed-per-turn",
+            fmt::format("G331 and G332 need a pitch ({}) and a spindle speed (S)", letter));
       return settle_axes();
     }
     Move& move = add_move(MoveKind::linear, end);
@@ -282,16 +290,19 @@ void BlockRunner::go_in_machine_frame() {
   if (!words_.has_any("XYZ") && !rotary_target_) return;
   check_unit();
   if (radius_.active && radius_.radius_mm != 0)
-    return error(words_.offset(), "cutter-radius", fmt::format("machine coordinates under G{}; G40 was expected before", radius_.g));
+    return error(words_.offset(), "cutter-radius",
+                 fmt::format("machine coordinates under G{}; G40 was expected before", radius_.g));
   if (motion_ != Motion::rapid && motion_ != Motion::linear)
-    return error(words_.offset(), "machine-frame", "machine coordinates (SUPA, G53, G153) go with G0 or G1; another motion is active");
+    return error(words_.offset(), "machine-frame",
+                 "machine coordinates (SUPA, G53, G153) go with G0 or G1; another motion is active");
   Vec3 end = position_mm_, machine_mm = Vec3::Zero();
   std::uint8_t given = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Slot& slot = words_.of(kAxisLetters[axis]);
     if (!slot.given) continue;
     if (slot.dimension == Dimension::incremental) {
-      error(slot.offset, "machine-frame", "an increment in machine coordinates is not supported; an absolute one was expected");
+      error(slot.offset, "machine-frame",
+            "an increment in machine coordinates is not supported; an absolute one was expected");
       continue;
     }
     machine_mm[static_cast<Eigen::Index>(axis)] = slot.value * unit_mm();
@@ -331,9 +342,12 @@ void BlockRunner::go_to_fixed_point() {
 
 /// A place of the machine's own that the program does not give.
 void BlockRunner::go_home(const WordRow& row, std::uint32_t offset, const BlockPlace&) {
-  report_.warning(offset, "machine-place",
-                  fmt::format("{} ({}) moves the axes to a place that the program does not give; where the tool is afterwards is not known", row.name, row.what),
-                  row.name);
+  report_.warning(
+      offset, "machine-place",
+      fmt::format(
+          "{} ({}) moves the axes to a place that the program does not give; where the tool is afterwards is not known",
+          row.name, row.what),
+      row.name);
   place_.fill(AxisPlace::reference);
 }
 
@@ -342,38 +356,48 @@ void BlockRunner::prepare_cutting(const char* what, bool arc) {
     const char letter = kAxisLetters[axis];
     if (place_[axis] == AxisPlace::known) continue;
     const Slot& slot = words_.of(letter);
-    const bool placed = slot.given && (slot.dimension == Dimension::absolute || (slot.dimension == Dimension::as_modal && absolute_));
+    const bool placed =
+        slot.given && (slot.dimension == Dimension::absolute || (slot.dimension == Dimension::as_modal && absolute_));
     if (placed && !(arc && place_[axis] == AxisPlace::never)) {
       if (place_[axis] == AxisPlace::never)
-        report_.warning(words_.offset(), "start-unknown",
-                        fmt::format("{} to {} from a place that the program has not given; the move is ignored for material removal", what, letter),
-                        "from nowhere");
+        report_.warning(
+            words_.offset(), "start-unknown",
+            fmt::format(
+                "{} to {} from a place that the program has not given; the move is ignored for material removal", what,
+                letter),
+            "from nowhere");
       continue;
     }
     if (place_[axis] == AxisPlace::never) {
-      report_.warning(words_.offset(), "start-unknown",
-                      fmt::format("{} before {} was programmed; the tool is assumed to be at {}0", what, letter, letter));
+      report_.warning(
+          words_.offset(), "start-unknown",
+          fmt::format("{} before {} was programmed; the tool is assumed to be at {}0", what, letter, letter));
       place_[axis] = AxisPlace::known;
     } else {
       report_.warning(words_.offset(), "at-reference",
-                      fmt::format("{} while {} is at a machine coordinate; the move is ignored for material removal", what, letter));
+                      fmt::format("{} while {} is at a machine coordinate; the move is ignored for material removal",
+                                  what, letter));
     }
   }
   if (first_cut_offset_ == 0) first_cut_offset_ = state_.work_offset;
-  if (state_.work_offset != first_cut_offset_ && !(offsets_.known(state_.work_offset) && offsets_.known(first_cut_offset_)))
-    report_.warning(words_.offset(), "work-offsets",
-                    "the program cuts in more than one work offset; their distance is not known, and all are treated as one frame");
+  if (state_.work_offset != first_cut_offset_ &&
+      !(offsets_.known(state_.work_offset) && offsets_.known(first_cut_offset_)))
+    report_.warning(
+        words_.offset(), "work-offsets",
+        "the program cuts in more than one work offset; their distance is not known, and all are treated as one frame");
 }
 
 std::optional<double> BlockRunner::cutting_feed(double length_mm, const char* g) {
   const std::size_t at = request_.motion_given ? request_.motion_offset : words_.offset();
   if (state_.feed_mode == FeedMode::inverse_time && !words_.has('F')) {
-    error(at, "feed-missing", fmt::format("{} in inverse time (G93) without F; every cutting block needs its own F", g), "G93");
+    error(at, "feed-missing", fmt::format("{} in inverse time (G93) without F; every cutting block needs its own F", g),
+          "G93");
     return std::nullopt;
   }
   if (!feed_) {
     if (!words_.has('F'))
-      error(at, "feed-missing", fmt::format("{} without a feed; F greater than zero was expected before or in this block", g), "feed");
+      error(at, "feed-missing",
+            fmt::format("{} without a feed; F greater than zero was expected before or in this block", g), "feed");
     return std::nullopt;
   }
   if (*feed_ == 0) {
@@ -386,7 +410,8 @@ std::optional<double> BlockRunner::cutting_feed(double length_mm, const char* g)
       return *feed_ * length_mm;
     case FeedMode::per_revolution:
       if (state_.spindle_speed_rpm > 0) return *feed_ * state_.spindle_speed_rpm / 60.0;
-      error(words_.offset(), "feed-per-turn", "a feed per revolution (G95) without a spindle speed; S was expected before", "feed-per-turn");
+      error(words_.offset(), "feed-per-turn",
+            "a feed per revolution (G95) without a spindle speed; S was expected before", "feed-per-turn");
       return std::nullopt;
     case FeedMode::per_minute:
       break;
@@ -408,7 +433,9 @@ bool BlockRunner::arc_error(const ArcResult& result, const ArcWords& arc) {
   std::string message = fmt::format("the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end",
                                     result.start_radius_mm, result.end_radius_mm);
   if (result.radius_difference_mm < most) {
-    report_.warning(at, "arc-radius", message + fmt::format("; a difference below {:.3f} mm was expected", kArcRadiusWarningMm), "arc-radius");
+    report_.warning(at, "arc-radius",
+                    message + fmt::format("; a difference below {:.3f} mm was expected", kArcRadiusWarningMm),
+                    "arc-radius");
     return false;
   }
   message += fmt::format("; a difference below {:.2f} mm was expected", most);
@@ -443,7 +470,8 @@ void BlockRunner::move_on_arc() {
   settle_axes_for("an arc", false);
   prepare_cutting(g, true);
   if (leaving_) {
-    error(words_.offset(), "cutter-radius", fmt::format("the move off the contour after G40 is an arc ({}); a straight move (G0, G1) was expected", g));
+    error(words_.offset(), "cutter-radius",
+          fmt::format("the move off the contour after G40 is an arc ({}); a straight move (G0, G1) was expected", g));
     leaving_ = false;
   }
   const PlaneAxes axes = axes_of(plane_);
@@ -468,8 +496,9 @@ void BlockRunner::move_on_arc() {
     const Slot& across = words_.of(kCentreLetters[axes.normal]);
     if (across.given && across.value != 0)
       error(across.offset, "arc",
-            fmt::format("{} does not belong to an arc in this plane; {} and {} were expected", kCentreLetters[axes.normal],
-                        kCentreLetters[std::min(axes.first, axes.second)], kCentreLetters[std::max(axes.first, axes.second)]));
+            fmt::format("{} does not belong to an arc in this plane; {} and {} were expected",
+                        kCentreLetters[axes.normal], kCentreLetters[std::min(axes.first, axes.second)],
+                        kCentreLetters[std::max(axes.first, axes.second)]));
     if (absolute_words == 1) editable_ = false;
   }
   if (words_.has(Extra::cr)) arc.r_mm = words_.of(Extra::cr).value * unit_mm();
@@ -483,7 +512,8 @@ void BlockRunner::move_on_arc() {
     const Slot& ar = words_.of(Extra::ar);
     const double angle = ar.value;
     if (!(angle > 0 && angle < 360)) {
-      error(ar.offset, "arc", fmt::format("an opening angle AR={:g}; more than 0 and less than 360 degrees was expected", angle));
+      error(ar.offset, "arc",
+            fmt::format("an opening angle AR={:g}; more than 0 and less than 360 degrees was expected", angle));
       return settle_axes();
     }
     const bool has_end = words_.has(kAxisLetters[axes.first]) || words_.has(kAxisLetters[axes.second]) || polar;
@@ -497,7 +527,8 @@ void BlockRunner::move_on_arc() {
       out = turn * out;
       for (const int axis : {axes.first, axes.second}) end[axis] = middle[axis] + out[axis];
     } else if (!centre) {
-      const double chord = std::hypot(end[axes.first] - arc.start_mm[axes.first], end[axes.second] - arc.start_mm[axes.second]);
+      const double chord =
+          std::hypot(end[axes.first] - arc.start_mm[axes.first], end[axes.second] - arc.start_mm[axes.second]);
       const double radius = 0.5 * chord / std::sin(rad_from_deg(angle / 2));
       arc.r_mm = angle > 180 ? -radius : radius;
     }
@@ -506,7 +537,8 @@ void BlockRunner::move_on_arc() {
     const Slot& turn = words_.of(Extra::turn);
     const double turns = std::trunc(turn.value);
     if (turns != turn.value)
-      report_.warning(turn.offset, "arc-turns", fmt::format("TURN={:g} is no whole number; {:g} full turns are taken", turn.value, turns));
+      report_.warning(turn.offset, "arc-turns",
+                      fmt::format("TURN={:g} is no whole number; {:g} full turns are taken", turn.value, turns));
     if (!(turns >= 0 && turns <= 999))
       error(turn.offset, "arc-turns", fmt::format("TURN={:g} turns; 0 to 999 was expected", turn.value));
     else
@@ -533,7 +565,8 @@ void BlockRunner::make_arc_move(const ArcWords& words, const Vec3& end_in_frame,
   }
   const auto in_moves = frame_.plain || !result.error.empty() ? result.arc : from_program(frame_, result.arc);
   if (!in_moves)
-    error(words_.offset(), "scaling", "an arc under a scale that differs along its two axes would be an ellipse; one scale for both was expected");
+    error(words_.offset(), "scaling",
+          "an arc under a scale that differs along its two axes would be an ellipse; one scale for both was expected");
   if (arc_error(result, arc) || !in_moves) {
     position_mm_ = end_mm;
     return settle_axes();
@@ -566,8 +599,10 @@ void BlockRunner::move_through_point() {
   const Vec3 a = via - start, b = end - start;
   const Vec3 cross = a.cross(b);
   if (b.norm() < 1e-6 || a.norm() < 1e-6 || (via - end).norm() < 1e-6)
-    return fail("CIP needs three places that differ; the point on the arc (I1, J1, K1) or the end is one of the others");
-  if (cross.norm() < 1e-9 * a.norm() * b.norm()) return fail("the three points of CIP lie on a line; an arc was expected");
+    return fail(
+        "CIP needs three places that differ; the point on the arc (I1, J1, K1) or the end is one of the others");
+  if (cross.norm() < 1e-9 * a.norm() * b.norm())
+    return fail("the three points of CIP lie on a line; an arc was expected");
   const Vec3 normal = cross.normalized();
   const Vec3 to_centre = Vec3(a.squaredNorm() * b - b.squaredNorm() * a).cross(cross) / (2 * cross.squaredNorm());
   Arc arc;
@@ -582,7 +617,9 @@ void BlockRunner::move_through_point() {
   if (sweep <= 0) sweep += 2 * kPi;
   arc.sweep_rad = sign * sweep;
   const auto in_moves = frame_.plain ? arc : from_program(frame_, arc);
-  if (!in_moves) return fail("an arc under a scale that differs along its two axes would be an ellipse; one scale for both was expected");
+  if (!in_moves)
+    return fail(
+        "an arc under a scale that differs along its two axes would be an ellipse; one scale for both was expected");
   out_.arcs.push_back(*in_moves);
   Move& move = add_move(MoveKind::arc, end_mm);
   move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
@@ -615,7 +652,8 @@ void BlockRunner::move_tangentially() {
   Vec3 along = direction.value_or(Vec3(Vec3::Zero()));
   along[axes.normal] = 0;
   if (along.norm() < 1e-9) {
-    error(words_.offset(), "arc", "CT continues the last move, which has no direction in the plane; a move in it was expected before");
+    error(words_.offset(), "arc",
+          "CT continues the last move, which has no direction in the plane; a move in it was expected before");
     position_mm_ = end_mm;
     return settle_axes();
   }
@@ -626,7 +664,8 @@ void BlockRunner::move_tangentially() {
   const double across = chord.dot(left), length = chord.norm();
   if (std::abs(across) < 1e-9 * std::max(length, 1.0)) {  // straight on
     if (chord.dot(along) <= 0) {
-      error(words_.offset(), "arc", "CT would have to turn back on itself; an end beside the direction of the last move was expected");
+      error(words_.offset(), "arc",
+            "CT would have to turn back on itself; an end beside the direction of the last move was expected");
       position_mm_ = end_mm;
       return settle_axes();
     }

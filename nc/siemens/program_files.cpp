@@ -35,7 +35,8 @@ std::optional<FoundProgram> ProgramFiles::find(const Program& from, const std::s
       std::error_code none;
       if (fs::exists(main_.source.name(), none))
         for (const auto& entry : fs::directory_iterator(folder, none))
-          if (entry.is_regular_file(none)) folder_.try_emplace(in_upper_case(entry.path().filename().string()), entry.path().string());
+          if (entry.is_regular_file(none))
+            folder_.try_emplace(in_upper_case(entry.path().filename().string()), entry.path().string());
     }
     auto& file = files_[name];
     for (const char* extension : {".SPF", ".MPF", ".CYC", "_SPF", "_MPF", ""}) {

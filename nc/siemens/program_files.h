@@ -18,7 +18,8 @@ struct FoundProgram {
 class ProgramFiles {
  public:
   ProgramFiles(const Program& main, Diagnostics& diagnostics) : main_(main), diagnostics_(diagnostics) {}
-  /// `name`: upper case, as it is called. Looks in `from`, in the main program, then for NAME.SPF and the like beside it.
+  /// `name`: upper case, as it is called. Looks in `from`, in the main program, then for NAME.SPF and the like beside
+  /// it.
   std::optional<FoundProgram> find(const Program& from, const std::string& name);
 
  private:

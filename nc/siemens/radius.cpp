@@ -18,14 +18,16 @@ void BlockRunner::read_radius_code(const CodeWord& code) {
   }
   if (!radius_mm) {
     report_.warning(code.offset, "radius-unknown",
-                    fmt::format("no radius is given for tool {}; G{} takes 0, as in a program of the cutter centre", state_.tool, code.number),
+                    fmt::format("no radius is given for tool {}; G{} takes 0, as in a program of the cutter centre",
+                                state_.tool, code.number),
                     fmt::format("T{}", state_.tool));
     radius_mm = 0;
   }
   *radius_mm += offset_normal_mm_;
   if (radius_.active && (radius_.radius_mm != 0 || *radius_mm != 0)) {
     if (radius_.g != code.number || radius_.radius_mm != *radius_mm)
-      error(code.offset, "cutter-radius", fmt::format("G{} while G{} is active; G40 was expected before", code.number, radius_.g));
+      error(code.offset, "cutter-radius",
+            fmt::format("G{} while G{} is active; G40 was expected before", code.number, radius_.g));
     return;
   }
   radius_ = {true, code.number, *radius_mm, out_.moves.size(), code.offset};
@@ -33,9 +35,11 @@ void BlockRunner::read_radius_code(const CodeWord& code) {
   change_state();
   if (*radius_mm == 0 || not_editable_told_) return;
   not_editable_told_ = true;
-  report_.warning(code.offset, "not-editable",
-                  fmt::format("the path under G{} is computed here, cutter radius {:.4f} mm; compensation leaves these moves unchanged",
-                              code.number, std::abs(*radius_mm)));
+  report_.warning(
+      code.offset, "not-editable",
+      fmt::format(
+          "the path under G{} is computed here, cutter radius {:.4f} mm; compensation leaves these moves unchanged",
+          code.number, std::abs(*radius_mm)));
 }
 
 void BlockRunner::end_radius() {
@@ -50,7 +54,8 @@ void BlockRunner::end_radius() {
   const double facing = a[axes.first] * b[axes.second] - a[axes.second] * b[axes.first];
   if (std::abs(a[axes.normal]) > 1e-12 || std::abs(b[axes.normal]) > 1e-12) {
     report_.error(radius.offset, "cutter-radius",
-                  fmt::format("G{} in a plane that ROT or CYCLE800 has turned out of the machine axes is not supported", radius.g));
+                  fmt::format("G{} in a plane that ROT or CYCLE800 has turned out of the machine axes is not supported",
+                              radius.g));
     return;
   }
   CutterRadius cutter;
@@ -63,7 +68,8 @@ void BlockRunner::end_radius() {
   cutter.name = fmt::format("G{}", radius.g);
   const CutterRadiusResult result = compensate_radius(out_, radius.first_move, cutter);
   for (const CutterRadiusProblem& problem : result.problems)
-    report_.error(program_ == main_ ? main_->offset_of(problem.block) : words_.offset(), "cutter-radius", problem.message);
+    report_.error(program_ == main_ ? main_->offset_of(problem.block) : words_.offset(), "cutter-radius",
+                  problem.message);
   beside_mm_ = result.end_mm - position_mm_;
   leaving_ = result.problems.empty() && beside_mm_ != Vec3::Zero();
 }

@@ -1,6 +1,7 @@
 #include "nc/siemens/siemens_language.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +13,8 @@
 namespace camber::nc::siemens {
 namespace {
 
-constexpr double kPowersOfTen[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+constexpr double kPowersOfTen[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                   1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
 constexpr char kEndOfFile = '\x1a';  ///< of old systems
 
@@ -63,12 +65,13 @@ class Reader {
       program_.words.resize(block.first_word);
     }
     block.word_count = static_cast<std::uint16_t>(program_.words.size() - block.first_word);
-    if (block.word_count > 0 && program_.words[block.first_word].letter == 'N') note_number(program_.words[block.first_word]);
+    if (block.word_count > 0 && program_.words[block.first_word].letter == 'N')
+      note_number(program_.words[block.first_word]);
     program_.blocks.push_back(block);
   }
 
   void note_number(const Word& word) {
-    numbers_.emplace_back(static_cast<std::uint64_t>(std::max(word.value, 0.0)), block());
+    tree_.numbers.emplace_back(static_cast<std::uint64_t>(std::max(word.value, 0.0)), block());
   }
 
   /// Words of one letter and a number, CR=number, and a comment. False where anything else stands in the line.
@@ -101,7 +104,8 @@ class Reader {
                            text[behind] == '/' || text[behind] == '(' || text[behind] == '[' || text[behind] == '.' ||
                            text[behind] == '<' || text[behind] == '_'))
         return false;
-      if (letter == 'N' && (begin != number - 1 || text[number] == '-' || text[number] == '+' || value != std::floor(value)))
+      if (letter == 'N' &&
+          (begin != number - 1 || text[number] == '-' || text[number] == '+' || value != std::floor(value)))
         return false;
       if (letter == 'N' && program_.words.size() > first_word) return false;
       if (at - begin > 200) return false;
@@ -153,9 +157,10 @@ class Reader {
       if (item.kind == ItemKind::label) tree_.labels[tree_.names[item.name]].push_back(this->block());
       add_word(item);
     }
-    block.flow = statement.flow != FlowKind::none || std::ranges::any_of(statement.items, [](const Item& i) {
-      return i.kind == ItemKind::call || i.kind == ItemKind::assign || (i.kind == ItemKind::word && !i.constant);
-    });
+    block.flow =
+        statement.flow != FlowKind::none || std::ranges::any_of(statement.items, [](const Item& i) {
+          return i.kind == ItemKind::call || i.kind == ItemKind::assign || (i.kind == ItemKind::word && !i.constant);
+        });
     if (statement.flow != FlowKind::none || !statement.items.empty()) tree_.statements.push_back(std::move(statement));
   }
 
@@ -171,7 +176,8 @@ class Reader {
       return;
     }
     if (to - begin > 200) return;
-    program_.words.push_back({'N', 1, static_cast<std::uint16_t>(to - begin), static_cast<std::uint32_t>(begin), value});
+    program_.words.push_back(
+        {'N', 1, static_cast<std::uint16_t>(to - begin), static_cast<std::uint32_t>(begin), value});
   }
 
   /// What edits may change of a statement, under the letters of all languages.
@@ -218,10 +224,7 @@ class Reader {
   // --- loops and branches
 
   void link() {
-    for (const auto& [number, block] : numbers_) {
-      auto& blocks = tree_.labels[fmt::format("N{}", number)];
-      if (blocks.empty() || blocks.back() != block) blocks.push_back(block);
-    }
+    std::ranges::sort(tree_.numbers);
     for (auto& [name, blocks] : tree_.labels) std::ranges::sort(blocks);
     std::vector<Statement*> open;
     std::size_t part = 0;
@@ -324,7 +327,6 @@ class Reader {
   Reporter& report_;
   std::string_view text_;
   bool bom_ = false;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers_;
 };
 
 }  // namespace
@@ -334,9 +336,19 @@ const Statement* Tree::statement(std::uint32_t block) const {
   return at != statements.end() && at->block == block ? &*at : nullptr;
 }
 
-const Part& Tree::part_of(std::uint32_t block) const {
-  const auto behind = std::ranges::upper_bound(parts, block, {}, &Part::first);
-  return behind == parts.begin() ? parts.front() : *(behind - 1);
+std::vector<std::uint32_t> Tree::blocks_of(const std::string& label) const {
+  std::vector<std::uint32_t> out;
+  if (label.size() > 1 && label[0] == 'N' && is_digit(label[1])) {
+    std::uint64_t number = 0;
+    const auto end = std::from_chars(label.data() + 1, label.data() + label.size(), number);
+    if (end.ec == std::errc() && end.ptr == label.data() + label.size())
+      for (auto at = std::ranges::lower_bound(numbers, std::pair(number, 0U));
+           at != numbers.end() && at->first == number; ++at)
+        out.push_back(at->second);
+  }
+  if (const auto found = labels.find(label); found != labels.end())
+    out.insert(out.end(), found->second.begin(), found->second.end());
+  return out;
 }
 
 Program read(SourceText source, Diagnostics& diagnostics) {

@@ -15,7 +15,9 @@ constexpr char kReaders[] = "check, time, feed, fit-feed, predict, compensate an
 
 std::uint8_t bit_of(char letter) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(letter - 'A')); }
 
-double nearest(double angle, double from) { return angle + 2 * kPi * std::floor((from - angle) / (2 * kPi) + 0.5 + 1e-9); }
+double nearest(double angle, double from) {
+  return angle + 2 * kPi * std::floor((from - angle) / (2 * kPi) + 0.5 + 1e-9);
+}
 
 }  // namespace
 
@@ -29,17 +31,21 @@ void BlockRunner::check_rotary_letter(char letter) {
   if (options_.rotary_axes.empty()) {
     if (slot.value != 0)
       error(slot.offset, "rotary-axis",
-            fmt::format("rotary axis {} is read on a machine with [kinematics], by camber {}; X, Y and Z were expected", letter, kReaders),
+            fmt::format("rotary axis {} is read on a machine with [kinematics], by camber {}; X, Y and Z were expected",
+                        letter, kReaders),
             std::string(1, letter));
     else
       report_.warning(slot.offset, "rotary-axis",
-                      fmt::format("rotary axis {} is not supported; it is assumed to stay at 0", letter), "rotary-zero");
+                      fmt::format("rotary axis {} is not supported; it is assumed to stay at 0", letter),
+                      "rotary-zero");
     return;
   }
   std::string axes;
   for (const char known : std::string_view("ABC"))
     if (rotary_axis(known)) axes += fmt::format("{}{}", axes.empty() ? "" : " and ", known);
-  error(slot.offset, "rotary-axis", fmt::format("{} is not an axis of the machine's chain; {} were expected", letter, axes), std::string(1, letter));
+  error(slot.offset, "rotary-axis",
+        fmt::format("{} is not an axis of the machine's chain; {} were expected", letter, axes),
+        std::string(1, letter));
 }
 
 void BlockRunner::set_tip_control(TipControl control, const char* code, std::uint32_t offset) {
@@ -49,7 +55,8 @@ void BlockRunner::set_tip_control(TipControl control, const char* code, std::uin
   }
   if (control != TipControl::off) {
     if (state_.work_frame != WorkFrame::machine)
-      error(offset, "tilted-frame", fmt::format("{} in a plane that CYCLE800 has swivelled; CYCLE800() was expected before", code));
+      error(offset, "tilted-frame",
+            fmt::format("{} in a plane that CYCLE800 has swivelled; CYCLE800() was expected before", code));
     if (radius_.active && radius_.radius_mm != 0)
       error(offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", code, radius_.g));
   }
@@ -66,7 +73,11 @@ void BlockRunner::read_rotary_words() {
     if (!directed) return;
     const Vec3 direction(words_.of(Extra::a3).value, words_.of(Extra::b3).value, words_.of(Extra::c3).value);
     if (direction.x() != 0 || direction.y() != 0 || direction.z() <= 0)
-      error(words_.offset(), "rotary-axis", fmt::format("A3 B3 C3 (tool direction) are read on a machine with [kinematics], by camber {}; a tool along Z was expected", kReaders), "A3");
+      error(words_.offset(), "rotary-axis",
+            fmt::format("A3 B3 C3 (tool direction) are read on a machine with [kinematics], by camber {}; a tool along "
+                        "Z was expected",
+                        kReaders),
+            "A3");
     return;
   }
   if (request_.frame || request_.dwell || request_.limits) return;
@@ -82,18 +93,24 @@ void BlockRunner::read_rotary_word(const RotaryOption& axis, RotaryTarget& targe
   const char letter = axis.letter;
   const Slot& slot = words_.of(letter);
   const auto refuse = [&](std::string_view with) {
-    error(slot.offset, "rotary-axis", fmt::format("{} {} is not supported; rotary words were expected with G0 to G3 or SUPA", letter, with), with);
+    error(slot.offset, "rotary-axis",
+          fmt::format("{} {} is not supported; rotary words were expected with G0 to G3 or SUPA", letter, with), with);
   };
   if (radius_.active && radius_.radius_mm != 0) return refuse(fmt::format("under G{}", radius_.g));
-  if (state_.work_frame == WorkFrame::tilted && aligned_ && !request_.machine_frame) return refuse("in a plane that CYCLE800 has swivelled");
+  if (state_.work_frame == WorkFrame::tilted && aligned_ && !request_.machine_frame)
+    return refuse("in a plane that CYCLE800 has swivelled");
   double& end = target.end[letter - 'A'];
   const double value = rad_from_deg(slot.value);
   const double shift = request_.machine_frame ? 0 : offsets_.rotary_rad(state_.work_offset)[letter - 'A'];
   const bool unknown = (angles_unknown_ & bit_of(letter)) != 0;
-  const bool incremental = slot.dimension == Dimension::incremental || (slot.dimension == Dimension::as_modal && !absolute_);
+  const bool incremental =
+      slot.dimension == Dimension::incremental || (slot.dimension == Dimension::as_modal && !absolute_);
   if (incremental) {
     if (unknown)
-      error(slot.offset, "rotary-axis", fmt::format("{} by increments after {}, which leaves its position open; G90 was expected", letter, direction_code_), "G91");
+      error(slot.offset, "rotary-axis",
+            fmt::format("{} by increments after {}, which leaves its position open; G90 was expected", letter,
+                        direction_code_),
+            "G91");
     end += value;
   } else {
     const double wanted = value + shift;
@@ -123,11 +140,14 @@ void BlockRunner::read_tool_direction() {
   target.is_direction = true;
   target.end = Vec3(words_.of(Extra::a3).value, words_.of(Extra::b3).value, words_.of(Extra::c3).value);
   const double length = target.end.norm();
-  if (length < 1e-6) return error(words_.offset(), "tool-direction", "A3 B3 C3 of the tool's direction are all zero; a direction was expected");
+  if (length < 1e-6)
+    return error(words_.offset(), "tool-direction",
+                 "A3 B3 C3 of the tool's direction are all zero; a direction was expected");
   if (state_.tip_control == TipControl::off)
     return error(words_.offset(), "tool-direction", "A3 B3 C3 without TRAORI; TRAORI was expected before", "A3");
   if (rotary_target_)
-    return error(words_.offset(), "tool-direction", "A3 B3 C3 and rotary axes in one block; one of them was expected", "A3 A");
+    return error(words_.offset(), "tool-direction", "A3 B3 C3 and rotary axes in one block; one of them was expected",
+                 "A3 A");
   target.end = (total_frame().linear * (target.end / length)).normalized();
   direction_code_ = "A3 B3 C3";
   rotary_target_ = target;
@@ -144,25 +164,29 @@ void BlockRunner::settle_axes_for(const char* what, bool line) {
   for (unsigned axis = 0; axis < 3; ++axis) {
     const Slot& slot = words_.of(kAxisLetters[axis]);
     if (!slot.given) continue;
-    const bool incremental = slot.dimension == Dimension::incremental || (slot.dimension == Dimension::as_modal && !absolute_);
+    const bool incremental =
+        slot.dimension == Dimension::incremental || (slot.dimension == Dimension::as_modal && !absolute_);
     if ((open_axes_ & (1U << axis)) != 0 && incremental) {
       error(slot.offset, "position-open",
-            fmt::format("{0} by increments after {1}, which leaves {0} open; G90 was expected", kAxisLetters[axis], open_cause_));
+            fmt::format("{0} by increments after {1}, which leaves {0} open; G90 was expected", kAxisLetters[axis],
+                        open_cause_));
       open_axes_ = 0;
       return;
     }
     if (line) open_axes_ = static_cast<std::uint8_t>(open_axes_ & ~(1U << axis));
   }
   if (line || open_axes_ == 0) return;
-  error(words_.offset(), "position-open",
-        fmt::format("{} after {} before X, Y and Z were programmed; G0 or G1 with them was expected", what, open_cause_));
+  error(
+      words_.offset(), "position-open",
+      fmt::format("{} after {} before X, Y and Z were programmed; G0 or G1 with them was expected", what, open_cause_));
   open_axes_ = 0;
 }
 
 void BlockRunner::add_rotary_target(std::size_t move) {
   if (!out_.machine_origin_mm) out_.machine_origin_mm = offsets_.machine_origin_mm(state_.work_offset);
   if (!rotary_target_) return;
-  const bool turns = rotary_target_->is_direction || (angles_unknown_ & rotary_target_->given) != 0 || rotary_target_->end != rotary_rad_;
+  const bool turns = rotary_target_->is_direction || (angles_unknown_ & rotary_target_->given) != 0 ||
+                     rotary_target_->end != rotary_rad_;
   rotary_target_->move = static_cast<std::uint32_t>(move);
   if (state_.feed_mode == FeedMode::inverse_time && feed_ && *feed_ > 0 && out_.moves[move].kind == MoveKind::linear)
     rotary_target_->time_s = 1 / *feed_;

@@ -63,7 +63,8 @@ void Sequencer::count_run() {
   std::uint8_t& count = runs[block_];
   if (count > 0 && ++repeated_ > options_.max_repeated_blocks) {
     report_.error(frame().file->offset_of(block_), "endless",
-                  fmt::format("loops and jumps have run {} blocks again; the program is taken to be endless", options_.max_repeated_blocks));
+                  fmt::format("loops and jumps have run {} blocks again; the program is taken to be endless",
+                              options_.max_repeated_blocks));
     running_ = false;
   }
   if (count < 255) ++count;
@@ -82,7 +83,8 @@ void Sequencer::step() {
     }
     if (++repeated_ > options_.max_repeated_blocks) {
       running_ = false;
-      report_.error(f.file->offset_of(std::min<std::size_t>(block_, f.file->blocks.size() - 1)), "endless", "a repeated part never ends");
+      report_.error(f.file->offset_of(std::min<std::size_t>(block_, f.file->blocks.size() - 1)), "endless",
+                    "a repeated part never ends");
     }
     return;
   }
@@ -193,7 +195,8 @@ bool Sequencer::run_flow(const Statement& s) {
         const Item& variable = head->items[head->variable];
         double next = 0;
         if (tree().names[variable.name] == "R") {
-          double& r = evaluator_.parameter(evaluator_.known_number(tree().arguments[variable.first], "FOR"), variable.offset);
+          double& r =
+              evaluator_.parameter(evaluator_.known_number(tree().arguments[variable.first], "FOR"), variable.offset);
           next = r += 1;
         } else if (const auto found = evaluator_.variable(variable.name); found && found->dimensions == 0) {
           next = found->values[0].number += 1;
@@ -237,11 +240,9 @@ void Sequencer::enter_for(const Statement& s) {
 }
 
 std::optional<std::uint32_t> Sequencer::find_target(const std::string& name, Jump::Search search) const {
-  const auto found = tree().labels.find(name);
-  if (found == tree().labels.end()) return std::nullopt;
   const Part& part = frame().part;
   std::optional<std::uint32_t> before, behind;
-  for (const std::uint32_t block : found->second) {
+  for (const std::uint32_t block : tree().blocks_of(name)) {
     if (block < part.first || block >= part.end) continue;
     if (block > block_ && !behind) behind = block;
     if (block <= block_) before = block;
@@ -263,7 +264,8 @@ void Sequencer::jump(const Jump& j) {
   if (j.target != kNone) {
     target = find_target(name, j.search);
     if (!target)
-      if (const auto variable = evaluator_.variable(j.target); variable && variable->values[0].text) name = *variable->values[0].text;
+      if (const auto variable = evaluator_.variable(j.target); variable && variable->values[0].text)
+        name = *variable->values[0].text;
   } else {
     name = evaluator_.text(j.value);
   }
@@ -275,7 +277,8 @@ void Sequencer::jump(const Jump& j) {
     if (j.silent) return;
     const bool elsewhere = find_target(name, Jump::Search::both).has_value();
     report_.error(j.offset, "jump",
-                  elsewhere ? fmt::format("{} is not {} here, where {} looks for it", name, j.search == Jump::Search::forward ? "below" : "above",
+                  elsewhere ? fmt::format("{} is not {} here, where {} looks for it", name,
+                                          j.search == Jump::Search::forward ? "below" : "above",
                                           j.search == Jump::Search::forward ? "GOTOF" : "GOTOB")
                             : fmt::format("no label or block number {} in this program", name));
     running_ = false;
@@ -312,20 +315,16 @@ void Sequencer::repeat_part(const Statement& s) {
     end = *first + 1;
   } else if (s.labels.size() > 1) {
     const std::string& last = tree().names[s.labels[1]];
-    const auto found = tree().labels.find(last);
-    if (found != tree().labels.end())
-      for (const std::uint32_t block : found->second)
-        if (block >= *first && block < frame().part.end && !end) end = block + 1;
+    for (const std::uint32_t block : tree().blocks_of(last))
+      if (block >= *first && block < frame().part.end && !end) end = block + 1;
     if (!end) {
       report_.error(s.flow_offset, "repeat", fmt::format("no label {} below {}", last, name));
       running_ = false;
       return;
     }
   } else {
-    const auto found = tree().labels.find("ENDLABEL");
-    if (found != tree().labels.end())
-      for (const std::uint32_t block : found->second)
-        if (block > *first && block < frame().part.end && !end) end = block;
+    for (const std::uint32_t block : tree().blocks_of("ENDLABEL"))
+      if (block > *first && block < frame().part.end && !end) end = block;
     if (end && !behind && *end > s.block) end.reset();
     if (!end) end = behind ? frame().part.end : s.block;
   }
@@ -363,7 +362,8 @@ void Sequencer::run_items(const Statement& s) {
       case ItemKind::word:
         if (name == "P" && call) {
           const double p = word_value(item, "P");
-          if (!(p >= 0 && p <= 9999)) throw RunError(item.offset, "subprogram", fmt::format("P{:g} runs; 1 to 9999 were expected", p));
+          if (!(p >= 0 && p <= 9999))
+            throw RunError(item.offset, "subprogram", fmt::format("P{:g} runs; 1 to 9999 were expected", p));
           times = static_cast<std::size_t>(p);
         } else {
           run_word(item);
@@ -409,11 +409,14 @@ void Sequencer::run_items(const Statement& s) {
     } else if (call->row && call->row->does == Does::refused) {
       runner_.set_command(*call->row, call->offset);
     } else if (call->row) {
-      report_.error(call->offset, "cycle", fmt::format("{} under MCALL is not supported; a drilling cycle or a subprogram was expected", call->row->name));
+      report_.error(call->offset, "cycle",
+                    fmt::format("{} under MCALL is not supported; a drilling cycle or a subprogram was expected",
+                                call->row->name));
     } else {
       if (!files_.find(*frame().file, tree().names[call->name])) {
         report_.error(call->offset, "subprogram",
-                      fmt::format("no subprogram {0}: neither %_N_{0}_SPF in this file nor {0}.SPF beside it", tree().names[call->name]));
+                      fmt::format("no subprogram {0}: neither %_N_{0}_SPF in this file nor {0}.SPF beside it",
+                                  tree().names[call->name]));
         return;
       }
       modal_ = ModalCall{&tree(), frame().file, call, std::nullopt};
@@ -448,7 +451,10 @@ void Sequencer::run_word(const Item& item) {
   if (item.row) return run_command_word(item);
   if (name.size() > 1) {
     const double value = word_value(item, name);
-    report_.error(item.offset, "axis", fmt::format("{}={:g}: {} is not an axis that Camber knows; X, Y, Z, A, B or C was expected", name, value, name), name);
+    report_.error(
+        item.offset, "axis",
+        fmt::format("{}={:g}: {} is not an axis that Camber knows; X, Y, Z, A, B or C was expected", name, value, name),
+        name);
     return;
   }
   const char letter = name[0];
@@ -461,7 +467,8 @@ void Sequencer::run_word(const Item& item) {
     case 'M': {
       const double value = word_value(item, name);
       if (letter == 'G' && item.index != kNone) {
-        report_.error(item.offset, "not-supported", "a G function by its group (G[n]=) is not supported; its own word was expected");
+        report_.error(item.offset, "not-supported",
+                      "a G function by its group (G[n]=) is not supported; its own word was expected");
         return;
       }
       const int number = value >= 0 && value < 1e6 && value == std::floor(value) ? static_cast<int>(value) : -1;
@@ -482,11 +489,13 @@ void Sequencer::run_word(const Item& item) {
       break;
   }
   if (letter == 'L' || letter == 'O' || letter == 'P' || letter == 'R') {
-    report_.error(item.offset, "unknown-word", fmt::format("{} is no word here; an axis or a function was expected", letter), name);
+    report_.error(item.offset, "unknown-word",
+                  fmt::format("{} is no word here; an axis or a function was expected", letter), name);
     return;
   }
   Slot& slot = words.set(letter);
-  if (slot.given) report_.error(item.offset, "word-twice", fmt::format("{} twice in one block; once was expected", letter));
+  if (slot.given)
+    report_.error(item.offset, "word-twice", fmt::format("{} twice in one block; once was expected", letter));
   slot = {true, !item.constant, item.dimension, word_value(item, name), item.offset};
 }
 
@@ -494,37 +503,60 @@ void Sequencer::run_word(const Item& item) {
 void Sequencer::run_command_word(const Item& item) {
   const WordRow& row = *item.row;
   switch (row.does) {
-    case Does::radius: return set_extra(item, Extra::cr);
-    case Does::opening_angle: return set_extra(item, Extra::ar);
-    case Does::polar_angle: return set_extra(item, Extra::ap);
-    case Does::polar_radius: return set_extra(item, Extra::rp);
-    case Does::turns: return set_extra(item, Extra::turn);
-    case Does::via_i: return set_extra(item, Extra::i1);
-    case Does::via_j: return set_extra(item, Extra::j1);
-    case Does::via_k: return set_extra(item, Extra::k1);
-    case Does::chamfer: return set_extra(item, Extra::chf);
-    case Does::chamfer_side: return set_extra(item, Extra::chr);
-    case Does::rounding: return set_extra(item, Extra::rnd);
-    case Does::line_angle: return set_extra(item, Extra::ang);
-    case Does::blend_distance: return set_extra(item, Extra::adis);
-    case Does::plane_angle: return set_extra(item, Extra::rpl);
-    case Does::direction_a: return set_extra(item, Extra::a3);
-    case Does::direction_b: return set_extra(item, Extra::b3);
-    case Does::direction_c: return set_extra(item, Extra::c3);
-    case Does::modal_rounding: return runner_.set_modal_rounding(word_value(item, row.name));
-    case Does::offset_normal: return runner_.set_offset_normal(word_value(item, row.name));
+    case Does::radius:
+      return set_extra(item, Extra::cr);
+    case Does::opening_angle:
+      return set_extra(item, Extra::ar);
+    case Does::polar_angle:
+      return set_extra(item, Extra::ap);
+    case Does::polar_radius:
+      return set_extra(item, Extra::rp);
+    case Does::turns:
+      return set_extra(item, Extra::turn);
+    case Does::via_i:
+      return set_extra(item, Extra::i1);
+    case Does::via_j:
+      return set_extra(item, Extra::j1);
+    case Does::via_k:
+      return set_extra(item, Extra::k1);
+    case Does::chamfer:
+      return set_extra(item, Extra::chf);
+    case Does::chamfer_side:
+      return set_extra(item, Extra::chr);
+    case Does::rounding:
+      return set_extra(item, Extra::rnd);
+    case Does::line_angle:
+      return set_extra(item, Extra::ang);
+    case Does::blend_distance:
+      return set_extra(item, Extra::adis);
+    case Does::plane_angle:
+      return set_extra(item, Extra::rpl);
+    case Does::direction_a:
+      return set_extra(item, Extra::a3);
+    case Does::direction_b:
+      return set_extra(item, Extra::b3);
+    case Does::direction_c:
+      return set_extra(item, Extra::c3);
+    case Does::modal_rounding:
+      return runner_.set_modal_rounding(word_value(item, row.name));
+    case Does::offset_normal:
+      return runner_.set_offset_normal(word_value(item, row.name));
     case Does::corner_feed:
-      report_.warning(item.offset, "no-effect", fmt::format("{} ({}) is read without effect", row.name, row.what), row.name);
+      report_.warning(item.offset, "no-effect", fmt::format("{} ({}) is read without effect", row.name, row.what),
+                      row.name);
       return;
-    case Does::spindle_position: return runner_.orient_spindle();
+    case Does::spindle_position:
+      return runner_.orient_spindle();
     case Does::position_axis: {
       const std::string axis = item.index == kNone ? std::string() : evaluator_.axis_name(item.index);
       if (axis.size() != 1 || std::string_view("XYZABC").find(axis[0]) == std::string_view::npos) {
         report_.error(item.offset, "axis", fmt::format("{}[{}]: X, Y, Z, A, B or C was expected", row.name, axis));
         return;
       }
-      report_.error(item.offset, "not-supported",
-                    fmt::format("{}[{}] (an axis beside the path) is not supported; G0 {} was expected", row.name, axis, axis), row.name);
+      report_.error(
+          item.offset, "not-supported",
+          fmt::format("{}[{}] (an axis beside the path) is not supported; G0 {} was expected", row.name, axis, axis),
+          row.name);
       return;
     }
     case Does::blend_distance_rapid:
@@ -540,9 +572,17 @@ CycleCall Sequencer::cycle_call(const Item& item) {
   CycleCall call;
   call.row = item.row;
   call.offset = item.offset;
-  static const std::map<std::string, double> kNames = {
-      {"_OFF", 0}, {"_FINISH", 1}, {"_SEMIFIN", 2}, {"_ROUGH", 3}, {"_PRECISION", 4},
-      {"_ORI_FINISH", 11}, {"_ORI_SEMIFIN", 12}, {"_ORI_ROUGH", 13}, {"_ORI_PRECISION", 14}, {"_TOP_SURFACE_SMOOTH_OFF", 0}, {"_TOP_SURFACE_SMOOTH_ON", 0}};
+  static const std::map<std::string, double> kNames = {{"_OFF", 0},
+                                                       {"_FINISH", 1},
+                                                       {"_SEMIFIN", 2},
+                                                       {"_ROUGH", 3},
+                                                       {"_PRECISION", 4},
+                                                       {"_ORI_FINISH", 11},
+                                                       {"_ORI_SEMIFIN", 12},
+                                                       {"_ORI_ROUGH", 13},
+                                                       {"_ORI_PRECISION", 14},
+                                                       {"_TOP_SURFACE_SMOOTH_OFF", 0},
+                                                       {"_TOP_SURFACE_SMOOTH_ON", 0}};
   for (std::uint32_t i = 0; i < item.count; ++i) {
     const std::uint32_t node = tree().arguments[item.first + i];
     if (node == kNone) {
@@ -558,7 +598,8 @@ CycleCall Sequencer::cycle_call(const Item& item) {
       }
     }
     call.values.emplace_back(evaluator_.value(node));
-    if (!call.values.back()->text && std::isnan(call.values.back()->number)) evaluator_.known_number(node, item.row->name);
+    if (!call.values.back()->text && std::isnan(call.values.back()->number))
+      evaluator_.known_number(node, item.row->name);
   }
   return call;
 }
@@ -569,11 +610,16 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
     case Does::nothing:
       return;
     case Does::main_spindle:
-      runner_.set_main_spindle(item.count > 0 && tree().arguments[item.first] != kNone ? static_cast<int>(evaluator_.known_number(tree().arguments[item.first], "SETMS")) : 1);
+      runner_.set_main_spindle(item.count > 0 && tree().arguments[item.first] != kNone
+                                   ? static_cast<int>(evaluator_.known_number(tree().arguments[item.first], "SETMS"))
+                                   : 1);
       return;
     case Does::alarm: {
-      const double number = item.count > 0 && tree().arguments[item.first] != kNone ? evaluator_.number(tree().arguments[item.first]) : 0;
-      report_.error(item.offset, "alarm", fmt::format("the program reaches SETAL({:.0f}), an alarm of its own, which stops the machine", number));
+      const double number =
+          item.count > 0 && tree().arguments[item.first] != kNone ? evaluator_.number(tree().arguments[item.first]) : 0;
+      report_.error(
+          item.offset, "alarm",
+          fmt::format("the program reaches SETAL({:.0f}), an alarm of its own, which stops the machine", number));
       return;
     }
     case Does::call_text: {
@@ -589,11 +635,15 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
       return runner_.set_command(*item.row, item.offset);
     case Does::pattern: {
       if (!modal_) {
-        report_.error(item.offset, "cycle", fmt::format("{} without a modal cycle; MCALL with a drilling cycle was expected before", item.row->name));
+        report_.error(
+            item.offset, "cycle",
+            fmt::format("{} without a modal cycle; MCALL with a drilling cycle was expected before", item.row->name));
         return;
       }
       if (!modal_->cycle) {
-        report_.error(item.offset, "not-supported", fmt::format("{} with a subprogram under MCALL is not supported; a drilling cycle was expected", item.row->name));
+        report_.error(item.offset, "not-supported",
+                      fmt::format("{} with a subprogram under MCALL is not supported; a drilling cycle was expected",
+                                  item.row->name));
         return;
       }
       const BlockPlace here = place();
@@ -602,7 +652,8 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
     default:
       break;
   }
-  if (item.row->kind == WordKind::cycle && item.row->does != Does::refused) return runner_.run_cycle(cycle_call(item), place());
+  if (item.row->kind == WordKind::cycle && item.row->does != Does::refused)
+    return runner_.run_cycle(cycle_call(item), place());
   runner_.set_command(*item.row, item.offset);
 }
 
@@ -616,7 +667,8 @@ void Sequencer::start_subprogram(const std::string& name, const Item& item, std:
     return;
   }
   if (frames_.size() >= kMaxLevels) {
-    report_.error(item.offset, "subprogram", fmt::format("{} is called {} levels deep; at most {} were expected", name, kMaxLevels, kMaxLevels));
+    report_.error(item.offset, "subprogram",
+                  fmt::format("{} is called {} levels deep; at most {} were expected", name, kMaxLevels, kMaxLevels));
     running_ = false;
     return;
   }
@@ -635,7 +687,8 @@ void Sequencer::start_subprogram(const std::string& name, const Item& item, std:
       break;
     }
   if (&own != &tree() && item.count > 0)
-    throw RunError(item.offset, "not-supported", fmt::format("{} with values, under MCALL of another file, is not supported", name));
+    throw RunError(item.offset, "not-supported",
+                   fmt::format("{} with values, under MCALL of another file, is not supported", name));
   bind_parameters(next, procedure, item);
   if (procedure) {
     next.start = next.at = procedure->block + 1;
@@ -649,7 +702,8 @@ void Sequencer::start_subprogram(const std::string& name, const Item& item, std:
 void Sequencer::bind_parameters(Frame& next, const Statement* procedure, const Item& item) {
   const std::size_t wanted = procedure ? procedure->declared.size() : 0;
   if (item.count > wanted)
-    throw RunError(item.offset, "subprogram", fmt::format("{} values for a subprogram with {} parameters", item.count, wanted));
+    throw RunError(item.offset, "subprogram",
+                   fmt::format("{} values for a subprogram with {} parameters", item.count, wanted));
   const Tree& called = tree_of(*next.file);
   next.level.variables.resize(called.names.size());
   for (std::size_t i = 0; i < wanted; ++i) {
@@ -669,7 +723,8 @@ void Sequencer::bind_parameters(Frame& next, const Statement* procedure, const I
       }
       if (d.by_reference) next.copied_back.emplace_back(made, node);
     }
-    if (d.type == ValueType::text || d.type == ValueType::axis) made->values[0].text = std::make_shared<const std::string>();
+    if (d.type == ValueType::text || d.type == ValueType::axis)
+      made->values[0].text = std::make_shared<const std::string>();
     if (d.type == ValueType::frame) made->values[0].frame = std::make_shared<const Affine>();
     if (node != kNone)
       made->values[0] = evaluator_.value(node);
@@ -677,7 +732,8 @@ void Sequencer::bind_parameters(Frame& next, const Statement* procedure, const I
       made->values[0] = {called.nodes[d.value].number, {}, {}};
     else if (d.value != kNone && called.nodes[d.value].kind == NodeKind::text)
       made->values[0].text = std::make_shared<const std::string>(called.texts[called.nodes[d.value].name]);
-    if (d.type == ValueType::integer && !made->values[0].text) made->values[0].number = std::floor(made->values[0].number + 0.5);
+    if (d.type == ValueType::integer && !made->values[0].text)
+      made->values[0].number = std::floor(made->values[0].number + 0.5);
     next.level.variables[d.name] = made;
   }
 }
@@ -709,7 +765,7 @@ void Sequencer::end_of_part() {
 /// Moves of blocks that have run more than once have no text of their own.
 void Sequencer::mark_repeated_moves() {
   for (Move& move : out_.moves)
-    if (move.block < runs_.size() && runs_[move.block] > 1) move.editable = move.end_fixed = false;
+    if (move.block < runs_.size() && runs_[move.block] > 1) move.editable = false;
 }
 
 void Sequencer::warn_of_blocks_behind_the_end() const {
@@ -720,8 +776,10 @@ void Sequencer::warn_of_blocks_behind_the_end() const {
       }))
     return;
   for (std::uint32_t b = block_ + 1; b < part.end; ++b)
-    if (main_.blocks[b].word_count > 1 || (main_.blocks[b].word_count == 1 && main_.words[main_.blocks[b].first_word].letter != 'N')) {
-      report_.warning(main_.offset_of(b), "after-end", "blocks behind the end of the program (M30, M2, M17) do not run");
+    if (main_.blocks[b].word_count > 1 ||
+        (main_.blocks[b].word_count == 1 && main_.words[main_.blocks[b].first_word].letter != 'N')) {
+      report_.warning(main_.offset_of(b), "after-end",
+                      "blocks behind the end of the program (M30, M2, M17) do not run");
       return;
     }
 }

@@ -22,10 +22,10 @@ class Sequencer {
   struct Frame {
     const Program* file = nullptr;
     Part part;
-    std::uint32_t at = 0;            ///< next block
-    std::uint32_t called_from = 0;   ///< Move::block for files of their own
+    std::uint32_t at = 0;           ///< next block
+    std::uint32_t called_from = 0;  ///< Move::block for files of their own
     Level level;
-    std::size_t times_left = 0;      ///< further runs (P)
+    std::size_t times_left = 0;  ///< further runs (P)
     std::uint32_t start = 0;
     std::shared_ptr<const BlockRunner::Saved> saved;
     bool of_mcall = false;
@@ -42,7 +42,7 @@ class Sequencer {
   struct ModalCall {
     const Tree* tree = nullptr;
     const Program* file = nullptr;
-    const Item* item = nullptr;                ///< a subprogram, called anew with its values
+    const Item* item = nullptr;  ///< a subprogram, called anew with its values
     std::optional<CycleCall> cycle;
   };
 
@@ -90,7 +90,7 @@ class Sequencer {
   std::optional<ModalCall> modal_;
   bool running_ = true;
   bool ended_ = false;
-  std::uint32_t block_ = 0;  ///< the one at hand
+  std::uint32_t block_ = 0;         ///< the one at hand
   std::vector<std::uint8_t> runs_;  ///< of the main file
   std::map<const Program*, std::vector<std::uint8_t>> other_runs_;
   std::size_t repeated_ = 0;

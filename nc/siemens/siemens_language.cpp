@@ -14,14 +14,17 @@ namespace {
 /// Words that neither ISO G code nor Klartext has, at the beginning of a word.
 bool shows_siemens(std::string_view name, char next) {
   if (name.starts_with("_N_")) return true;
-  if (name == "MSG" || name == "DEF" || name == "PROC" || name == "EXTERN" || name == "MCALL" || name == "SUPA" || name == "GOTOF" || name == "GOTOB" ||
-      name == "WORKPIECE" || name == "REPEATB" || name == "ENDFOR" || name == "ENDLOOP")
+  if (name == "MSG" || name == "DEF" || name == "PROC" || name == "EXTERN" || name == "MCALL" || name == "SUPA" ||
+      name == "GOTOF" || name == "GOTOB" || name == "WORKPIECE" || name == "REPEATB" || name == "ENDFOR" ||
+      name == "ENDLOOP")
     return true;
   const WordRow* row = find_word(name);
   if (!row) return false;
   if (row->kind == WordKind::address) return next == '=';
   if (row->kind == WordKind::cycle) return true;
-  static constexpr std::string_view kNot[] = {"CALL", "ROT", "TRANS", "START", "GET", "WRITE", "DELETE", "SAVE", "INIT", "DRIVE", "SOFT", "HOME", "NORM", "POLY", "RET", "CT", "CP"};
+  static constexpr std::string_view kNot[] = {"CALL",   "ROT",  "TRANS", "START", "GET",  "WRITE",
+                                              "DELETE", "SAVE", "INIT",  "DRIVE", "SOFT", "HOME",
+                                              "NORM",   "POLY", "RET",   "CT",    "CP"};
   if (std::ranges::find(kNot, name) != std::end(kNot)) return false;
   return true;
 }
@@ -40,6 +43,7 @@ bool is_own_g(std::string_view digits) {
 LanguageEvidence evidence(std::string_view text) {
   constexpr std::size_t kLines = 400;
   LanguageEvidence out;
+  bool ended = false;  // behind M30 only further programs count
   std::size_t at = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
   for (std::size_t line = 0; line < kLines && at < text.size(); ++line) {
     const std::size_t end = std::min(text.find_first_of("\r\n", at), text.size());
@@ -59,7 +63,9 @@ LanguageEvidence evidence(std::string_view text) {
     if (text.substr(i, 4) == "%_N_") {
       found(i, "%_N_");
       i = end;
+      ended = false;
     }
+    if (ended) i = end;
     for (int words = 0; i < end && words < 60; ++words) {
       const char c = text[i];
       if (c == ';' || c == '(' || c == '"' || c == '#' || c == '[' || c == '<') break;
@@ -69,7 +75,8 @@ LanguageEvidence evidence(std::string_view text) {
       }
       std::string name;
       const std::size_t begin = i;
-      while (i < end && (is_letter(text[i]) || text[i] == '_' || (is_digit(text[i]) && name.size() > 1))) name += upper(text[i++]);
+      while (i < end && (is_letter(text[i]) || text[i] == '_' || (is_digit(text[i]) && name.size() > 1)))
+        name += upper(text[i++]);
       std::size_t behind = i;
       while (behind < end && (text[behind] == ' ' || is_digit(text[behind]))) ++behind;
       const char next = behind < end ? text[behind] : '\0';
@@ -83,7 +90,9 @@ LanguageEvidence evidence(std::string_view text) {
         }
         std::size_t digits = i;
         while (digits < end && is_digit(text[digits])) ++digits;
-        if (name[0] == 'G' && is_own_g(text.substr(i, digits - i))) {
+        const std::string_view code = text.substr(i, digits - i);
+        ended |= name[0] == 'M' && (code == "30" || code == "2" || code == "02");
+        if (name[0] == 'G' && is_own_g(code)) {
           found(begin, std::string(text.substr(begin, digits - begin)));
           break;
         }

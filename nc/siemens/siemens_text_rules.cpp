@@ -26,14 +26,16 @@ class SiemensTextRules : public TextRules {
     const Statement* s = statement(block);
     if (!s) return false;
     return s->flow != FlowKind::none || std::ranges::any_of(s->items, [](const Item& i) {
-             return i.kind == ItemKind::call || (i.row && (i.row->does == Does::modal_call || i.row->does == Does::end_subprogram));
+             return i.kind == ItemKind::call ||
+                    (i.row && (i.row->does == Does::modal_call || i.row->does == Does::end_subprogram));
            });
   }
 
   std::vector<Word> words_at_end(std::uint32_t block) const override {
     std::vector<Word> out;
     for (const Word& w : program_.words_of(block)) {
-      const bool m = w.letter == 'M' && (w.value <= 2 || w.value == 5 || w.value == 9 || w.value == 17 || w.value == 30);
+      const bool m =
+          w.letter == 'M' && (w.value <= 2 || w.value == 5 || w.value == 9 || w.value == 17 || w.value == 30);
       if (m || (w.letter == 'G' && w.value == 9)) out.push_back(w);
     }
     return out;
@@ -58,7 +60,8 @@ class SiemensTextRules : public TextRules {
     const bool lower = !words.empty() && program_.source.text()[words.front().offset] >= 'a';
     if (letter == 'R') return (lower ? "cr=" : "CR=") + number;
     const std::string name(1, lower ? static_cast<char>(letter - 'A' + 'a') : letter);
-    if (std::string_view(kCentre).find(letter) != std::string_view::npos && centre_is_absolute(block)) return name + (lower ? "=ac(" : "=AC(") + number + ")";
+    if (std::string_view(kCentre).find(letter) != std::string_view::npos && centre_is_absolute(block))
+      return name + (lower ? "=ac(" : "=AC(") + number + ")";
     return name + number;
   }
 
@@ -102,7 +105,8 @@ class SiemensTextRules : public TextRules {
     const auto& text = program_.source.text();
     std::size_t block = 0;
     for (; block < program_.blocks.size(); ++block) {
-      const std::string_view line = std::string_view(text).substr(program_.blocks[block].offset, program_.blocks[block].length);
+      const std::string_view line =
+          std::string_view(text).substr(program_.blocks[block].offset, program_.blocks[block].length);
       if (!line.starts_with('%') && !line.starts_with(";$PATH")) break;
     }
     return block;
@@ -114,7 +118,8 @@ class SiemensTextRules : public TextRules {
 
   bool absolute_centre(const ModalState&, std::uint32_t block) const override { return centre_is_absolute(block); }
 
-  void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm, int decimals) override {
+  void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm,
+               int decimals) override {
     if (wanted.by_radius) return writer.set('R', arc.r_mm / unit_mm, decimals);
     const PlaneAxes axes = axes_of(wanted.plane);
     const auto set_centre = [&](char letter, double value_mm) {
@@ -124,14 +129,15 @@ class SiemensTextRules : public TextRules {
     set_centre(kCentre[axes.second], arc.second_mm);
   }
 
-  std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted, const RoundedArc& arc,
-                          double unit_mm, int decimals, std::span<const Word> own) override {
+  std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
+                          const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) override {
     const PlaneAxes axes = axes_of(wanted.plane);
     std::vector<NewWord> of_arc;
     if (wanted.by_radius)
       of_arc = {{'R', arc.r_mm / unit_mm, decimals}};
     else
-      of_arc = {{kCentre[axes.first], arc.first_mm / unit_mm, decimals}, {kCentre[axes.second], arc.second_mm / unit_mm, decimals}};
+      of_arc = {{kCentre[axes.first], arc.first_mm / unit_mm, decimals},
+                {kCentre[axes.second], arc.second_mm / unit_mm, decimals}};
     const auto feed = std::ranges::find(words, 'F', &NewWord::letter);
     words.insert(feed, of_arc.begin(), of_arc.end());
     return writer.further_block(words, own);
@@ -149,7 +155,8 @@ class SiemensTextRules : public TextRules {
 
   bool centre_is_absolute(std::uint32_t block) const {
     return std::ranges::any_of(program_.words_of(block), [&](const Word& w) {
-      return std::string_view(kCentre).find(w.letter) != std::string_view::npos && form_of(w).find("AC") != std::string::npos;
+      return std::string_view(kCentre).find(w.letter) != std::string_view::npos &&
+             form_of(w).find("AC") != std::string::npos;
     });
   }
 

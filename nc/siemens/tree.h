@@ -60,11 +60,11 @@ struct Node {
 enum class Dimension : std::uint8_t { as_modal, absolute, incremental, nearest, positive, negative };
 
 enum class ItemKind : std::uint8_t {
-  word,      ///< an address with a value: X10, X=R1, CR=8, M3=3, SPOS[1]=90
-  command,   ///< a word alone: TRANS, SUPA, G codes are words
-  call,      ///< NAME(...), NAME, L140: a cycle or a subprogram
-  assign,    ///< of a variable or a parameter
-  label      ///< NAME:
+  word,     ///< an address with a value: X10, X=R1, CR=8, M3=3, SPOS[1]=90
+  command,  ///< a word alone: TRANS, SUPA, G codes are words
+  call,     ///< NAME(...), NAME, L140: a cycle or a subprogram
+  assign,   ///< of a variable or a parameter
+  label     ///< NAME:
 };
 
 /// One part of a block.
@@ -77,8 +77,8 @@ struct Item {
   const WordRow* row = nullptr;  ///< what the name is, where it is a word of the language
   std::uint32_t offset = 0, length = 0;
   double number = 0;
-  std::uint32_t value = kNone;         ///< a node
-  std::uint32_t index = kNone;         ///< a node: the extension of the address (M3=3: 3), or the one in square brackets
+  std::uint32_t value = kNone;  ///< a node
+  std::uint32_t index = kNone;  ///< a node: the extension of the address (M3=3: 3), or the one in square brackets
   std::uint32_t first = 0, count = 0;  ///< arguments; of an assignment the indexes. kNone for one that is left out
 };
 
@@ -87,8 +87,8 @@ enum class FlowKind : std::uint8_t {
   if_block,
   else_branch,
   end_if,
-  jump,       ///< GOTO, GOTOF, GOTOB, GOTOC, GOTOS, with or without IF
-  select,     ///< CASE
+  jump,    ///< GOTO, GOTOF, GOTOB, GOTOC, GOTOS, with or without IF
+  select,  ///< CASE
   for_loop,
   end_for,
   while_loop,
@@ -107,7 +107,7 @@ enum class FlowKind : std::uint8_t {
 /// Where a jump goes: a label or block number; the search goes forward, backward, or first forward.
 struct Jump {
   enum class Search : std::uint8_t { forward, backward, both, start } search = Search::both;
-  bool silent = false;           ///< GOTOC: no error where there is no target
+  bool silent = false;  ///< GOTOC: no error where there is no target
   std::uint32_t offset = 0;
   std::uint32_t target = kNone;  ///< index into Tree::names: a label, "N100" or ":100"
   std::uint32_t value = kNone;   ///< a node: the target as a text
@@ -118,11 +118,11 @@ enum class ValueType : std::uint8_t { real, integer, boolean, text, axis, frame 
 struct Declared {
   std::uint32_t name = kNone;
   ValueType type = ValueType::real;
-  bool by_reference = false;                             ///< VAR
-  std::uint32_t dimension[3] = {kNone, kNone, kNone};    ///< nodes
+  bool by_reference = false;                           ///< VAR
+  std::uint32_t dimension[3] = {kNone, kNone, kNone};  ///< nodes
   std::uint32_t dimensions = 0;
-  std::uint32_t value = kNone;                           ///< a node: the initial or default value
-  std::vector<std::uint32_t> values;                     ///< SET(...)
+  std::uint32_t value = kNone;        ///< a node: the initial or default value
+  std::vector<std::uint32_t> values;  ///< SET(...)
   std::uint32_t offset = 0;
 };
 
@@ -132,16 +132,16 @@ struct Statement {
   FlowKind flow = FlowKind::none;
   bool named_number = false;  ///< REPEATB
   std::uint32_t flow_offset = 0;
-  std::uint32_t condition = kNone;             ///< a node: of IF, WHILE, UNTIL, CASE; of FOR the first value
-  std::uint32_t last = kNone;                  ///< a node: of FOR the last value; of REPEAT the count (P)
-  std::uint32_t variable = kNone;              ///< an item: the assigned variable of FOR
-  std::vector<Jump> jumps;                     ///< of jump: one; of CASE as many as constants, DEFAULT last
-  std::vector<std::uint32_t> constants;        ///< nodes, of CASE
-  std::vector<std::uint32_t> labels;           ///< names, of REPEAT
-  std::vector<Declared> declared;              ///< DEF; PROC: parameters
-  std::uint32_t name = kNone;                  ///< PROC
-  bool saves = false;                          ///< PROC ... SAVE
-  std::uint32_t partner = kNone;               ///< block: of IF its ELSE or ENDIF, of ELSE its ENDIF, of loops the other end
+  std::uint32_t condition = kNone;       ///< a node: of IF, WHILE, UNTIL, CASE; of FOR the first value
+  std::uint32_t last = kNone;            ///< a node: of FOR the last value; of REPEAT the count (P)
+  std::uint32_t variable = kNone;        ///< an item: the assigned variable of FOR
+  std::vector<Jump> jumps;               ///< of jump: one; of CASE as many as constants, DEFAULT last
+  std::vector<std::uint32_t> constants;  ///< nodes, of CASE
+  std::vector<std::uint32_t> labels;     ///< names, of REPEAT
+  std::vector<Declared> declared;        ///< DEF; PROC: parameters
+  std::uint32_t name = kNone;            ///< PROC
+  bool saves = false;                    ///< PROC ... SAVE
+  std::uint32_t partner = kNone;         ///< block: of IF its ELSE or ENDIF, of ELSE its ENDIF, of loops the other end
   std::vector<Item> items;
 };
 
@@ -155,13 +155,14 @@ struct Tree : LanguageTree {
   std::vector<std::string> names, texts;  ///< names in upper case
   std::vector<Node> nodes;
   std::vector<std::uint32_t> arguments;
-  std::vector<Statement> statements;                           ///< ascending by block
-  std::vector<Part> parts;                                     ///< at least one
-  std::map<std::string, std::vector<std::uint32_t>> labels;    ///< blocks; "N100", ":100" and names
-  std::string stock;                                           ///< arguments of WORKPIECE as written
+  std::vector<Statement> statements;                               ///< ascending by block
+  std::vector<Part> parts;                                         ///< at least one
+  std::map<std::string, std::vector<std::uint32_t>> labels;        ///< blocks; names, and ":100" of main blocks
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers{};  ///< of N words and their blocks, ascending
 
   const Statement* statement(std::uint32_t block) const;
-  const Part& part_of(std::uint32_t block) const;
+  /// Blocks with a label or block number ("N100"), ascending.
+  std::vector<std::uint32_t> blocks_of(const std::string& label) const;
   std::uint32_t argument(const Node& node, std::uint32_t which) const { return arguments[node.first + which]; }
 };
 

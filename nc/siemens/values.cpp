@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
+#include <Eigen/LU>
 
 #include "base/numbers.h"
 #include "base/units.h"
@@ -33,20 +33,14 @@ std::string text_of(const Value& value) {
   return fmt::format("{:.10g}", value.number);
 }
 
-bool same(double a, double b) {
-  return a == b || std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b));
-}
+bool same(double a, double b) { return a == b || std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
 
-std::int64_t whole(double number) {
-  return static_cast<std::int64_t>(std::clamp(std::trunc(number), -9e15, 9e15));
-}
+std::int64_t whole(double number) { return static_cast<std::int64_t>(std::clamp(std::trunc(number), -9e15, 9e15)); }
 
 /// ROUND, and what an INT takes of a REAL.
 double rounded_half(double number) { return std::floor(number + 0.5); }
 
-int axis_of(const std::string& name) {
-  return name == "X" ? 0 : name == "Y" ? 1 : name == "Z" ? 2 : -1;
-}
+int axis_of(const std::string& name) { return name == "X" ? 0 : name == "Y" ? 1 : name == "Z" ? 2 : -1; }
 
 }  // namespace
 
@@ -63,8 +57,9 @@ std::shared_ptr<Variable> Evaluator::whole_variable(std::uint32_t index) const {
 
 double& Evaluator::parameter(double number, std::size_t offset) {
   if (!(number >= 0 && number <= kMaxParameter) || number != std::floor(number))
-    throw RunError(offset, "variable",
-                   fmt::format("R[{:g}] is no R parameter; a whole number up to {:g} was expected", number, kMaxParameter));
+    throw RunError(
+        offset, "variable",
+        fmt::format("R[{:g}] is no R parameter; a whole number up to {:g} was expected", number, kMaxParameter));
   const auto index = static_cast<std::size_t>(number);
   if (index >= r_.size()) r_.resize(index + 1, 0.0);
   return r_[index];
@@ -87,8 +82,12 @@ std::size_t Evaluator::element(const Variable& variable, std::uint32_t first, st
 
 Value Evaluator::converted(const Value& value, ValueType type, std::size_t offset) const {
   const auto refuse = [&](const char* expected) {
-    throw RunError(offset, "type", fmt::format("{} is assigned to a variable of type {}",
-                                               value.text ? "a text" : value.frame ? "a frame" : "a number", expected));
+    throw RunError(offset, "type",
+                   fmt::format("{} is assigned to a variable of type {}",
+                               value.text    ? "a text"
+                               : value.frame ? "a frame"
+                                             : "a number",
+                               expected));
   };
   switch (type) {
     case ValueType::real:
@@ -96,7 +95,8 @@ Value Evaluator::converted(const Value& value, ValueType type, std::size_t offse
       return value;
     case ValueType::integer:
       if (value.frame) refuse("INT");
-      if (value.text) return value.text->size() == 1 ? Value{static_cast<double>((*value.text)[0]), {}, {}} : (refuse("INT"), value);
+      if (value.text)
+        return value.text->size() == 1 ? Value{static_cast<double>((*value.text)[0]), {}, {}} : (refuse("INT"), value);
       return {rounded_half(value.number), {}, {}};
     case ValueType::boolean:
       if (value.text || value.frame) refuse("BOOL");
@@ -119,9 +119,11 @@ void Evaluator::declare(const Declared& declared) {
   made->dimensions = declared.dimensions;
   std::size_t count = 1;
   for (std::uint32_t i = 0; i < declared.dimensions; ++i) {
-    const double size = declared.dimension[i] == kNone ? 0 : known_number(declared.dimension[i], "the size of an array");
+    const double size =
+        declared.dimension[i] == kNone ? 0 : known_number(declared.dimension[i], "the size of an array");
     if (!(size >= 1) || size * static_cast<double>(count) > kMaxElements)
-      throw RunError(declared.offset, "variable", fmt::format("an array of size {:g}; 1 to {} elements were expected", size, kMaxElements));
+      throw RunError(declared.offset, "variable",
+                     fmt::format("an array of size {:g}; 1 to {} elements were expected", size, kMaxElements));
     made->size[i] = static_cast<std::uint32_t>(size);
     count *= made->size[i];
   }
@@ -131,7 +133,8 @@ void Evaluator::declare(const Declared& declared) {
   if (declared.value != kNone) initial = converted(value(declared.value), declared.type, declared.offset);
   made->values.assign(count, initial);
   for (std::size_t i = 0; i < declared.values.size() && i < count; ++i)
-    if (declared.values[i] != kNone) made->values[i] = converted(value(declared.values[i]), declared.type, declared.offset);
+    if (declared.values[i] != kNone)
+      made->values[i] = converted(value(declared.values[i]), declared.type, declared.offset);
   if (level_->variables.size() < tree_->names.size()) level_->variables.resize(tree_->names.size());
   level_->variables[declared.name] = std::move(made);
 }
@@ -139,7 +142,8 @@ void Evaluator::declare(const Declared& declared) {
 void Evaluator::assign(const Item& item) {
   const std::string& name = tree_->names[item.name];
   const Node& right = node(item.value);
-  const bool list = right.kind == NodeKind::call && (tree_->names[right.name] == "SET" || tree_->names[right.name] == "REP");
+  const bool list =
+      right.kind == NodeKind::call && (tree_->names[right.name] == "SET" || tree_->names[right.name] == "REP");
   if (name == "R") {
     const double number = known_number(tree_->arguments[item.first], "the number of an R parameter");
     const Value given = value(item.value);
@@ -236,7 +240,8 @@ Value Evaluator::value(std::uint32_t index) {
         throw RunError(n.offset, "variable", fmt::format("{} is not declared here; DEF was expected before", name));
       }
       if (n.count == 0 && found->dimensions > 0)
-        throw RunError(n.offset, "variable", fmt::format("{} is an array; an index was expected", tree_->names[n.name]));
+        throw RunError(n.offset, "variable",
+                       fmt::format("{} is an array; an index was expected", tree_->names[n.name]));
       return found->values[element(*found, n.first, n.count, n.offset)];
     }
     case NodeKind::system:
@@ -264,7 +269,8 @@ Value Evaluator::binary(const Node& n) {
   if (n.kind == NodeKind::join) return text_value(text(left) + text(right));
   if (n.kind == NodeKind::chain) {
     const Value a = value(left), b = value(right);
-    if (!a.frame || !b.frame) throw RunError(n.offset, "type", "`:` chains frames; CTRANS, CROT and the like were expected");
+    if (!a.frame || !b.frame)
+      throw RunError(n.offset, "type", "`:` chains frames; CTRANS, CROT and the like were expected");
     return {0, {}, std::make_shared<const Affine>(a.frame->then_inside(*b.frame))};
   }
   if (n.kind >= NodeKind::equal && n.kind <= NodeKind::greater_equal) {
@@ -272,12 +278,18 @@ Value Evaluator::binary(const Node& n) {
     if (a.text && b.text) {
       const int order = a.text->compare(*b.text);
       switch (n.kind) {
-        case NodeKind::equal: return truth_value(order == 0);
-        case NodeKind::not_equal: return truth_value(order != 0);
-        case NodeKind::less: return truth_value(order < 0);
-        case NodeKind::greater: return truth_value(order > 0);
-        case NodeKind::less_equal: return truth_value(order <= 0);
-        default: return truth_value(order >= 0);
+        case NodeKind::equal:
+          return truth_value(order == 0);
+        case NodeKind::not_equal:
+          return truth_value(order != 0);
+        case NodeKind::less:
+          return truth_value(order < 0);
+        case NodeKind::greater:
+          return truth_value(order > 0);
+        case NodeKind::less_equal:
+          return truth_value(order <= 0);
+        default:
+          return truth_value(order >= 0);
       }
     }
     if (a.text || b.text || a.frame || b.frame)
@@ -285,21 +297,33 @@ Value Evaluator::binary(const Node& n) {
     if (std::isnan(a.number) || std::isnan(b.number)) return {kUnknown, {}, {}};
     const bool equal = same(a.number, b.number);
     switch (n.kind) {
-      case NodeKind::equal: return truth_value(equal);
-      case NodeKind::not_equal: return truth_value(!equal);
-      case NodeKind::less: return truth_value(a.number < b.number && !equal);
-      case NodeKind::greater: return truth_value(a.number > b.number && !equal);
-      case NodeKind::less_equal: return truth_value(a.number < b.number || equal);
-      default: return truth_value(a.number > b.number || equal);
+      case NodeKind::equal:
+        return truth_value(equal);
+      case NodeKind::not_equal:
+        return truth_value(!equal);
+      case NodeKind::less:
+        return truth_value(a.number < b.number && !equal);
+      case NodeKind::greater:
+        return truth_value(a.number > b.number && !equal);
+      case NodeKind::less_equal:
+        return truth_value(a.number < b.number || equal);
+      default:
+        return truth_value(a.number > b.number || equal);
     }
   }
   const double a = number(left), b = number(right);
   if (std::isnan(a) || std::isnan(b)) return {kUnknown, {}, {}};
   double out = 0;
   switch (n.kind) {
-    case NodeKind::add: out = a + b; break;
-    case NodeKind::subtract: out = a - b; break;
-    case NodeKind::multiply: out = a * b; break;
+    case NodeKind::add:
+      out = a + b;
+      break;
+    case NodeKind::subtract:
+      out = a - b;
+      break;
+    case NodeKind::multiply:
+      out = a * b;
+      break;
     case NodeKind::divide:
     case NodeKind::whole_divide:
       if (b == 0) throw RunError(n.offset, "expression", "a division by zero");
@@ -309,13 +333,23 @@ Value Evaluator::binary(const Node& n) {
       if (whole(b) == 0) throw RunError(n.offset, "expression", "MOD by zero");
       out = static_cast<double>(whole(a) % whole(b));
       break;
-    case NodeKind::bit_and: out = static_cast<double>(whole(a) & whole(b)); break;
-    case NodeKind::bit_or: out = static_cast<double>(whole(a) | whole(b)); break;
-    case NodeKind::bit_xor: out = static_cast<double>(whole(a) ^ whole(b)); break;
-    case NodeKind::logical_and: return truth_value(a != 0 && b != 0);
-    case NodeKind::logical_or: return truth_value(a != 0 || b != 0);
-    case NodeKind::logical_xor: return truth_value((a != 0) != (b != 0));
-    default: break;
+    case NodeKind::bit_and:
+      out = static_cast<double>(whole(a) & whole(b));
+      break;
+    case NodeKind::bit_or:
+      out = static_cast<double>(whole(a) | whole(b));
+      break;
+    case NodeKind::bit_xor:
+      out = static_cast<double>(whole(a) ^ whole(b));
+      break;
+    case NodeKind::logical_and:
+      return truth_value(a != 0 && b != 0);
+    case NodeKind::logical_or:
+      return truth_value(a != 0 || b != 0);
+    case NodeKind::logical_xor:
+      return truth_value((a != 0) != (b != 0));
+    default:
+      break;
   }
   if (!std::isfinite(out)) throw RunError(n.offset, "expression", "the result is too large a number");
   return {out, {}, {}};
@@ -339,7 +373,8 @@ Value Evaluator::system(const Node& n) {
 
 Value Evaluator::call(const Node& n) {
   const std::string& name = tree_->names[n.name];
-  if (name.size() >= 4 && name[0] == 'C' && (name == "CTRANS" || name == "CROT" || name == "CSCALE" || name == "CMIRROR" || name == "CRPL"))
+  if (name.size() >= 4 && name[0] == 'C' &&
+      (name == "CTRANS" || name == "CROT" || name == "CSCALE" || name == "CMIRROR" || name == "CRPL"))
     return frame_function(n, name);
   if (!find_function(name)) {
     unknown_name_ = name;
@@ -358,7 +393,9 @@ Value Evaluator::call(const Node& n) {
   if (name == "STRLEN") return {static_cast<double>(text(argument(0)).size()), {}, {}};
   if (name == "TOUPPER" || name == "TOLOWER") {
     std::string t = text(argument(0));
-    for (char& c : t) c = static_cast<char>(name == "TOUPPER" ? std::toupper(static_cast<unsigned char>(c)) : std::tolower(static_cast<unsigned char>(c)));
+    for (char& c : t)
+      c = static_cast<char>(name == "TOUPPER" ? std::toupper(static_cast<unsigned char>(c))
+                                              : std::tolower(static_cast<unsigned char>(c)));
     return text_value(std::move(t));
   }
   if (name == "NUMBER" || name == "ISNUMBER") {
@@ -369,7 +406,9 @@ Value Evaluator::call(const Node& n) {
   }
   if (name == "INDEX" || name == "RINDEX" || name == "MINDEX") {
     const std::string t = text(argument(0)), wanted = text(argument(1));
-    const std::size_t at = name == "RINDEX" ? t.rfind(wanted) : name == "INDEX" ? t.find(wanted) : t.find_first_of(wanted);
+    const std::size_t at = name == "RINDEX"  ? t.rfind(wanted)
+                           : name == "INDEX" ? t.find(wanted)
+                                             : t.find_first_of(wanted);
     return {at == std::string::npos ? -1.0 : static_cast<double>(at), {}, {}};
   }
   if (name == "SUBSTR") {
@@ -452,14 +491,16 @@ Value Evaluator::frame_function(const Node& n, const std::string& name) {
       out.linear(axis, axis) = -1;
       continue;
     }
-    if (i >= n.count || tree_->argument(n, i) == kNone) throw RunError(n.offset, "function", fmt::format("{} lacks a value", name));
+    if (i >= n.count || tree_->argument(n, i) == kNone)
+      throw RunError(n.offset, "function", fmt::format("{} lacks a value", name));
     const double v = known_number(tree_->argument(n, i++), name);
     if (name == "CTRANS") out.shift_mm[axis] = v * system_.unit_mm();
     if (name == "CSCALE") out.linear(axis, axis) = v;
     if (name == "CROT") angles[axis] = rad_from_deg(v);
   }
   if (name == "CROT")
-    out.linear = rotation_in(Plane::xy, angles.z()) * rotation_in(Plane::zx, angles.y()) * rotation_in(Plane::yz, angles.x());
+    out.linear =
+        rotation_in(Plane::xy, angles.z()) * rotation_in(Plane::zx, angles.y()) * rotation_in(Plane::yz, angles.x());
   if (name == "CSCALE" && out.linear.determinant() == 0) throw RunError(n.offset, "scaling", "CSCALE by zero");
   return {0, {}, std::make_shared<const Affine>(out)};
 }

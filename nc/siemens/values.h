@@ -25,9 +25,7 @@ struct RunError : std::runtime_error {
 struct Affine {
   Eigen::Matrix3d linear = Eigen::Matrix3d::Identity();
   Vec3 shift_mm = Vec3::Zero();
-  Affine then_inside(const Affine& inner) const {
-    return {linear * inner.linear, linear * inner.shift_mm + shift_mm};
-  }
+  Affine then_inside(const Affine& inner) const { return {linear * inner.linear, linear * inner.shift_mm + shift_mm}; }
   bool is_identity() const { return linear == Eigen::Matrix3d::Identity() && shift_mm == Vec3::Zero(); }
 };
 

@@ -15,9 +15,9 @@ enum class WordKind : std::uint8_t {
 
 /// What the interpreter does.
 enum class Does : std::uint8_t {
-  nothing,   ///< has no effect on the path: read, and nothing is said
-  noted,     ///< read without effect, and said: the path or its time depends on it on a real control
-  refused,   ///< [not-supported]
+  nothing,  ///< has no effect on the path: read, and nothing is said
+  noted,    ///< read without effect, and said: the path or its time depends on it on a real control
+  refused,  ///< [not-supported]
   // addresses
   radius,         // CR
   opening_angle,  // AR
@@ -26,22 +26,22 @@ enum class Does : std::uint8_t {
   turns,          // TURN
   via_i,
   via_j,
-  via_k,          // I1 J1 K1
-  chamfer,        // CHF
-  chamfer_side,   // CHR
-  rounding,       // RND
-  modal_rounding,  // RNDM
-  corner_feed,    // FRC, FRCM
-  line_angle,     // ANG
-  blend_distance,       // ADIS
+  via_k,                 // I1 J1 K1
+  chamfer,               // CHF
+  chamfer_side,          // CHR
+  rounding,              // RND
+  modal_rounding,        // RNDM
+  corner_feed,           // FRC, FRCM
+  line_angle,            // ANG
+  blend_distance,        // ADIS
   blend_distance_rapid,  // ADISPOS
-  offset_normal,  // OFFN
-  plane_angle,    // RPL
+  offset_normal,         // OFFN
+  plane_angle,           // RPL
   direction_a,
   direction_b,
-  direction_c,    // A3 B3 C3
+  direction_c,       // A3 B3 C3
   spindle_position,  // SPOS SPOSA
-  position_axis,  // POS POSA POSP
+  position_axis,     // POS POSA POSP
   // commands
   supa,
   trans,
@@ -60,24 +60,24 @@ enum class Does : std::uint8_t {
   contour_mode_off,
   cycle832,
   cycle800,
-  drilling,       // CYCLE81 ...
-  pattern,        // HOLES1 ...
+  drilling,        // CYCLE81 ...
+  pattern,         // HOLES1 ...
   thread_milling,  // CYCLE90
-  modal_call,     // MCALL
-  alarm,          // SETAL
+  modal_call,      // MCALL
+  alarm,           // SETAL
   end_subprogram,  // RET
   workpiece,
-  main_spindle,   // SETMS
-  call_text,      // CALL, PCALL
-  home            // machine's own positions
+  main_spindle,  // SETMS
+  call_text,     // CALL, PCALL
+  home           // machine's own positions
 };
 
 struct WordRow {
   std::string_view name;
   WordKind kind = WordKind::command;
   Does does = Does::nothing;
-  std::string_view what;           ///< for the table
-  std::string_view instead = {};   ///< refused: what could be done
+  std::string_view what;          ///< for the table
+  std::string_view instead = {};  ///< refused: what could be done
 };
 
 /// All of them, by name.

@@ -65,10 +65,13 @@ TEST(CamPrograms, HaasDrillingReadsWithAWarning) {
             Messages{"gpr_haas_sample.ncf:9:23: warning: P has no number; it is taken as P0 [no-number]"});
 }
 
-TEST(CamPrograms, WhatIsNotReadSaysSo) {
+TEST(CamPrograms, AProgramForSinumerikIsReadInItsLanguage) {
   EXPECT_EQ(said_of("nc/elmoe_keychain_840d.mpf"),
-            Messages{"elmoe_keychain_840d.mpf:3:5: error: DEF belongs to a Siemens Sinumerik program, which is not "
-                     "supported; Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
+            Messages{"elmoe_keychain_840d.mpf:19:34: warning: rotary axis B is not supported; it is assumed to stay at "
+                     "0 (and 15 more like it) [rotary-axis]"});
+}
+
+TEST(CamPrograms, WhatIsNotReadSaysSo) {
   EXPECT_EQ(
       said_of("nc/gpr_mazak_sample.eia"),
       (Messages{"gpr_mazak_sample.eia:2:1: error: G53.5 is not a G code that Camber knows [unknown-g]",

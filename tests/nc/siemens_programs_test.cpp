@@ -40,7 +40,8 @@ bool in_machine_coordinates(const Program& program, const Move& move) {
 bool turns_alone(const Program& program, const Move& move) {
   for (const Word& w : program.words_of(move.block))
     if (w.letter >= 'X' && w.letter <= 'Z') return false;
-  return program.source.line(move.block + 1).find_first_of("BC") != std::string_view::npos && move.start_mm == move.end_mm;
+  return program.source.line(move.block + 1).find_first_of("BC") != std::string_view::npos &&
+         move.start_mm == move.end_mm;
 }
 
 Figures figures_of(const Read& r) {
@@ -48,7 +49,9 @@ Figures figures_of(const Read& r) {
   const Interpretation& all = r.moves;
   Interpretation own;  // one move in program coordinates
   for (const Move& move : all.moves) {
-    if (move.kind == MoveKind::dwell || move.canned || in_machine_coordinates(r.program, move) || turns_alone(r.program, move)) continue;
+    if (move.kind == MoveKind::dwell || move.canned || in_machine_coordinates(r.program, move) ||
+        turns_alone(r.program, move))
+      continue;
     const double unit = all.state_of(move).inch ? 25.4 : 1;
     f.rapid += move.kind == MoveKind::rapid;
     f.line += move.kind == MoveKind::linear;
@@ -111,7 +114,8 @@ TEST_P(SiemensPrograms, HaveTheExpectedMoves) {
     }
   }
   double length = expected.at("feed_length").get<double>();
-  if (expected.contains("feed_length_of_blocks_with_TURN")) length -= expected["feed_length_of_blocks_with_TURN"].get<double>();
+  if (expected.contains("feed_length_of_blocks_with_TURN"))
+    length -= expected["feed_length_of_blocks_with_TURN"].get<double>();
   EXPECT_NEAR(f.length, length, chaotic ? 0.5 : 1e-5 * length);
 
   std::vector<double> speeds;
@@ -141,13 +145,16 @@ TEST(SiemensSame, HasTheMovesOfTheIsoProgram) {
   // In ISO the helix of one and a half turns is two arcs.
   std::vector<Move> wanted = iso.moves.moves;
   std::size_t n = 0;
-  const auto sweep = [](const Read& r, const Move& m) { return m.arc == Move::kNoArc ? 0.0 : r.moves.arcs[m.arc].sweep_rad; };
+  const auto sweep = [](const Read& r, const Move& m) {
+    return m.arc == Move::kNoArc ? 0.0 : r.moves.arcs[m.arc].sweep_rad;
+  };
   for (std::size_t i = 0; i < own.moves.moves.size(); ++i, ++n) {
     ASSERT_LT(n, wanted.size());
     const Move& m = own.moves.moves[i];
     double turned = sweep(iso, wanted[n]);
     const Vec3 start = wanted[n].start_mm;
-    while (m.kind == MoveKind::arc && (wanted[n].end_mm - m.end_mm).norm() > 1e-9 && n + 1 < wanted.size() && wanted[n + 1].kind == MoveKind::arc)
+    while (m.kind == MoveKind::arc && (wanted[n].end_mm - m.end_mm).norm() > 1e-9 && n + 1 < wanted.size() &&
+           wanted[n + 1].kind == MoveKind::arc)
       turned += sweep(iso, wanted[++n]);
     EXPECT_EQ(m.kind, wanted[n].kind) << i;
     expect_near_mm(m.start_mm, start);

@@ -64,7 +64,8 @@ TEST(Siemens, ExpressionsFollowThePrioritiesOfTheManual) {
 
 TEST(Siemens, VariablesArraysAndTheirRounding) {
   const Read r = read_siemens(
-      "DEF INT NN=2.6, FELD[2,3]=SET(1,2,3,4,5,6)\nDEF STRING[20] NAME=\"A\"\nDEF BOOL BB\nR[NN]=FELD[1,2]\nBB=17\nNAME=NAME<<\"B\"\n"
+      "DEF INT NN=2.6, FELD[2,3]=SET(1,2,3,4,5,6)\nDEF STRING[20] NAME=\"A\"\nDEF BOOL "
+      "BB\nR[NN]=FELD[1,2]\nBB=17\nNAME=NAME<<\"B\"\n"
       "G0 X=NN Y=R3+BB Z=STRLEN(NAME)\n");
   EXPECT_EQ(r.messages, Messages{});
   expect_near_mm(last(r), {3, 7, 2});
@@ -72,42 +73,52 @@ TEST(Siemens, VariablesArraysAndTheirRounding) {
 
 TEST(Siemens, JumpsGoToTheNearestLabelInTheirDirection) {
   const Read r = read_siemens(
-      "R1=0\nMA: R1=R1+1\nIF R1==1 GOTOF MA IF R1==9 GOTOF ENDE\nGOTOF ENDE\nMA: R1=R1+10\nIF R1<30 GOTOB MA\nGOTOF N100\nG0 X1\nN100 G0 X=R1\nENDE:\nM30\nN100 G0 "
+      "R1=0\nMA: R1=R1+1\nIF R1==1 GOTOF MA IF R1==9 GOTOF ENDE\nGOTOF ENDE\nMA: R1=R1+10\nIF R1<30 GOTOB MA\nGOTOF "
+      "N100\nG0 X1\nN100 G0 X=R1\nENDE:\nM30\nN100 G0 "
       "X99\n");
   expect_near_mm(last(r), {31, 0, 0});
 }
 
 TEST(Siemens, LoopsAndBranches) {
   const Read r = read_siemens(
-      "DEF INT II\nR1=0\nFOR II=1 TO 3\nR1=R1+II\nENDFOR\nWHILE R1<10\nR1=R1+1\nENDWHILE\nREPEAT\nR1=R1+1\nUNTIL R1>=12\nLOOP\nR1=R1+1\nIF R1>14 GOTOF RAUS\nENDLOOP\n"
-      "RAUS:\nIF R1==15\nG0 X=R1\nELSE\nG0 X99\nENDIF\nCASE(II) OF 1 GOTOF MA 4 GOTOF MB DEFAULT GOTOF MA\nMA: G0 Y99\nMB: G0 Z=II\n");
+      "DEF INT II\nR1=0\nFOR II=1 TO 3\nR1=R1+II\nENDFOR\nWHILE R1<10\nR1=R1+1\nENDWHILE\nREPEAT\nR1=R1+1\nUNTIL "
+      "R1>=12\nLOOP\nR1=R1+1\nIF R1>14 GOTOF RAUS\nENDLOOP\n"
+      "RAUS:\nIF R1==15\nG0 X=R1\nELSE\nG0 X99\nENDIF\nCASE(II) OF 1 GOTOF MA 4 GOTOF MB DEFAULT GOTOF MA\nMA: G0 "
+      "Y99\nMB: G0 Z=II\n");
   EXPECT_EQ(r.messages, (Messages{}));
   expect_near_mm(last(r), {15, 0, 4});
 }
 
 TEST(Siemens, RepeatedParts) {
-  const Read r = read_siemens("G0 X0 Y0 Z0\nG91\nMA: X1\nREPEAT MA P=3\nMB: Y1\nMC: Y1\nZ1\nREPEAT MB MC P=2\nREPEATB MB\nG90\nM30\n");
+  const Read r = read_siemens(
+      "G0 X0 Y0 Z0\nG91\nMA: X1\nREPEAT MA P=3\nMB: Y1\nMC: Y1\nZ1\nREPEAT MB MC P=2\nREPEATB MB\nG90\nM30\n");
   EXPECT_EQ(r.messages, Messages{});
   expect_near_mm(last(r), {4, 7, 1});
 }
 
 TEST(Siemens, SubprogramsWithParameters) {
   const Read r = read_siemens(
-      "%_N_MAIN_MPF\n;$PATH=/_N_MPF_DIR\nDEF REAL AA[2], BB=3\nG0 X0 Y0 Z0\nUP(AA,BB,5)\nG0 X=AA[0] Y=AA[1] Z=BB\nL10(7) P2\nM30\n%_N_UP_SPF\n"
-      "PROC UP(VAR REAL FF[2], VAR REAL BB, REAL CC, INT DD=4) SAVE DISPLOF\nG91\nFF[0]=CC+DD FF[1]=BB\nBB=BB*2\nRET\n%_N_L10_SPF\nPROC L10(REAL WW)\nG1 F100 X=IC(WW)\nM17\n");
+      "%_N_MAIN_MPF\n;$PATH=/_N_MPF_DIR\nDEF REAL AA[2], BB=3\nG0 X0 Y0 Z0\nUP(AA,BB,5)\nG0 X=AA[0] Y=AA[1] "
+      "Z=BB\nL10(7) P2\nM30\n%_N_UP_SPF\n"
+      "PROC UP(VAR REAL FF[2], VAR REAL BB, REAL CC, INT DD=4) SAVE DISPLOF\nG91\nFF[0]=CC+DD "
+      "FF[1]=BB\nBB=BB*2\nRET\n%_N_L10_SPF\nPROC L10(REAL WW)\nG1 F100 X=IC(WW)\nM17\n");
   EXPECT_EQ(r.messages, Messages{});
   expect_near_mm(last(r), {23, 3, 6});
 }
 
 TEST(Siemens, ModalSubprogramRunsBehindEachMove) {
-  const Read r = read_siemens("G0 X0 Y0 Z5\nMCALL TIEF(2)\nX1\nX2\nMCALL\nX3\nM30\n%_N_TIEF_SPF\nPROC TIEF(REAL TT)\nG1 Z=-TT F100\nG0 Z5\nRET\n");
+  const Read r = read_siemens(
+      "G0 X0 Y0 Z5\nMCALL TIEF(2)\nX1\nX2\nMCALL\nX3\nM30\n%_N_TIEF_SPF\nPROC TIEF(REAL TT)\nG1 Z=-TT F100\nG0 "
+      "Z5\nRET\n");
   EXPECT_EQ(r.messages, Messages{});
   EXPECT_EQ(r.moves.moves.size(), 8U);
   expect_near_mm(last(r), {3, 0, 5});
 }
 
 TEST(Siemens, FramesReplaceAddAndReset) {
-  const Read r = read_siemens("TRANS X10 Y20\nG0 X1 Y0 Z0\nAROT Z90\nX1 Y0\nASCALE X2 Y2\nX1 Y0\nMIRROR X0\nX1 Y2\nROT RPL=90\nX1 Y0\nTRANS\nX1 Y0\n");
+  const Read r = read_siemens(
+      "TRANS X10 Y20\nG0 X1 Y0 Z0\nAROT Z90\nX1 Y0\nASCALE X2 Y2\nX1 Y0\nMIRROR X0\nX1 Y2\nROT RPL=90\nX1 "
+      "Y0\nTRANS\nX1 Y0\n");
   EXPECT_EQ(r.messages, Messages{});
   const auto ends = ends_of(r);
   expect_near_mm(ends[0], {11, 20, 0});
@@ -126,8 +137,10 @@ TEST(Siemens, FrameVariables) {
 }
 
 TEST(Siemens, ArcsInAllTheirForms) {
-  const char* const kForms[] = {"G3 X0 Y10 I-10 J0", "G3 X0 Y10 CR=10", "G3 X0 Y10 I=AC(0) J=AC(0)", "G3 X0 Y10 AR=90", "G3 I-10 AR=90", "CIP X0 Y10 I1=10*COS(45) J1=10*SIN(45)",
-                                "G111 X0 Y0\nG3 AP=90 RP=10"};
+  const char* const kForms[] = {
+      "G3 X0 Y10 I-10 J0",         "G3 X0 Y10 CR=10", "G3 X0 Y10 I=AC(0) J=AC(0)",
+      "G3 X0 Y10 AR=90",           "G3 I-10 AR=90",   "CIP X0 Y10 I1=10*COS(45) J1=10*SIN(45)",
+      "G111 X0 Y0\nG3 AP=90 RP=10"};
   for (const char* form : kForms) {
     const Read r = read_siemens(std::string("G0 X10 Y0 Z0\nG1 F100\n") + form + "\n");
     EXPECT_EQ(r.messages, Messages{}) << form;
@@ -182,7 +195,8 @@ TEST(Siemens, DrillingCycles) {
   };
   EXPECT_EQ(heights("CYCLE81(10,0,2,-5)"), (std::vector<double>{2, -5, 10}));
   EXPECT_EQ(heights("CYCLE82(10,0,2,,7,0.5)"), (std::vector<double>{2, -7, 10}));
-  EXPECT_EQ(heights("CYCLE83(10,0,1,-12,,,5,1,,,1,1,,,,,0.5)"), (std::vector<double>{1, -5, 1, -4.5, -9, 1, -8.5, -12, 10}));
+  EXPECT_EQ(heights("CYCLE83(10,0,1,-12,,,5,1,,,1,1,,,,,0.5)"),
+            (std::vector<double>{1, -5, 1, -4.5, -9, 1, -8.5, -12, 10}));
   EXPECT_EQ(heights("CYCLE83(10,0,1,-6,,,3,0,,,1,0,,,0.2)"), (std::vector<double>{1, -3, -2.8, -6, 10}));
   EXPECT_EQ(heights("CYCLE84(10,0,2,-5,,,,,1.25,0,500)"), (std::vector<double>{2, -5, 2, 10}));
   EXPECT_EQ(heights("CYCLE85(10,0,2,-5,,0,80,160)"), (std::vector<double>{2, -5, 2, 10}));
@@ -190,7 +204,8 @@ TEST(Siemens, DrillingCycles) {
 }
 
 TEST(Siemens, PatternsOfHoles) {
-  const Read r = read_siemens("F100\nG0 X0 Y0 Z20\nMCALL CYCLE81(10,0,2,-5)\nHOLES1(10,0,0,0,10,3)\nHOLES2(0,0,20,0,90,4)\nMCALL\n");
+  const Read r = read_siemens(
+      "F100\nG0 X0 Y0 Z20\nMCALL CYCLE81(10,0,2,-5)\nHOLES1(10,0,0,0,10,3)\nHOLES2(0,0,20,0,90,4)\nMCALL\n");
   EXPECT_EQ(r.messages, Messages{});
   std::vector<Vec3> bottoms;
   for (const Move& m : r.moves.moves)
@@ -201,7 +216,8 @@ TEST(Siemens, PatternsOfHoles) {
 }
 
 TEST(Siemens, ModesOfTheControl) {
-  const Read r = read_siemens("G0 X0 Y0 Z0\nCYCLE832(0.02,3,1)\nG64\nG1 X1 F100\nCYCLE832()\nX2\nG641 ADIS=0.1\nX3\nG60\nX4\n");
+  const Read r =
+      read_siemens("G0 X0 Y0 Z0\nCYCLE832(0.02,3,1)\nG64\nG1 X1 F100\nCYCLE832()\nX2\nG641 ADIS=0.1\nX3\nG60\nX4\n");
   EXPECT_EQ(r.messages, Messages{});
   const auto state = [&](std::size_t i) { return r.moves.state_of(r.moves.moves[i]); };
   EXPECT_EQ(state(1).contouring, Contouring::cycle832);
@@ -228,25 +244,38 @@ TEST(Siemens, StockOfWorkpiece) {
 
 TEST(Siemens, WrongProgramsGetAMessageAtTheLine) {
   const auto said = [](const std::string& text) { return read_siemens(text).messages; };
-  EXPECT_EQ(said("G0 X0 Y0 Z0\nTRAOOF\n"),
-            (Messages{"p.mpf:2:1: error: no subprogram TRAOOF: neither %_N_TRAOOF_SPF in this file nor TRAOOF.SPF beside it [subprogram]"}));
-  EXPECT_EQ(said("println(\"END\")\n"),
-            (Messages{"p.mpf:1:1: error: no subprogram PRINTLN: neither %_N_PRINTLN_SPF in this file nor PRINTLN.SPF beside it [subprogram]"}));
+  EXPECT_EQ(said("G0 X0 Y0 Z0\nTRAOOF\n"), (Messages{"p.mpf:2:1: error: no subprogram TRAOOF: neither %_N_TRAOOF_SPF "
+                                                     "in this file nor TRAOOF.SPF beside it [subprogram]"}));
+  EXPECT_EQ(said("println(\"END\")\n"), (Messages{"p.mpf:1:1: error: no subprogram PRINTLN: neither %_N_PRINTLN_SPF in "
+                                                  "this file nor PRINTLN.SPF beside it [subprogram]"}));
   EXPECT_EQ(said("G0 X10 Y0 Z0\nG3 X-10 Y0 I10 J0 F100\n"),
-            (Messages{"p.mpf:2:1: error: the radius of the arc is 10.0000 mm at its start and 30.0000 mm at its end; a difference below 0.05 mm was expected (with the signs of I, J, K turned "
+            (Messages{"p.mpf:2:1: error: the radius of the arc is 10.0000 mm at its start and 30.0000 mm at its end; a "
+                      "difference below 0.05 mm was expected (with the signs of I, J, K turned "
                       "over it would fit: they lead from the start to the centre) [arc-radius]"}));
   EXPECT_EQ(said("G0 X0 Y0 Z0\nPOCKET3(5,0,1)\n"),
-            (Messages{"p.mpf:2:1: error: POCKET3 (rectangular pocket) is not supported; what can stand in its place: the moves themselves, G0 to G3, from the CAM system [not-supported]"}));
-  EXPECT_EQ(said("GOTOF WEITER\n"), (Messages{"p.mpf:1:1: error: no label or block number WEITER in this program [jump]"}));
+            (Messages{"p.mpf:2:1: error: POCKET3 (rectangular pocket) is not supported; what can stand in its place: "
+                      "the moves themselves, G0 to G3, from the CAM system [not-supported]"}));
+  EXPECT_EQ(said("GOTOF WEITER\n"),
+            (Messages{"p.mpf:1:1: error: no label or block number WEITER in this program [jump]"}));
   EXPECT_EQ(said("IF R1==1\nG0 X1\n"), (Messages{"p.mpf:1:1: error: IF has no end; ENDIF was expected [statement]"}));
-  EXPECT_EQ(said("G0 X=TIEFE\n"), (Messages{"p.mpf:1:6: error: TIEFE is not declared here; DEF was expected before [variable]"}));
-  EXPECT_EQ(said("R1=$AA_IM[Z]\nG0 X=R1\n"), (Messages{"p.mpf:2:6: error: X depends on $AA_IM, which is not known outside the machine; a value was expected [unknown-value]"}));
-  EXPECT_EQ(said("G0 X10 Y\n"), (Messages{"p.mpf:1:8: error: Y has no number; a number, or = and an expression, was expected [no-number]"}));
-  EXPECT_EQ(said("M5 G1234\n"), (Messages{"p.mpf:1:4: error: G1234 is not a G function of a Sinumerik program that Camber knows [unknown-g]"}));
+  EXPECT_EQ(said("G0 X=TIEFE\n"),
+            (Messages{"p.mpf:1:6: error: TIEFE is not declared here; DEF was expected before [variable]"}));
+  EXPECT_EQ(said("R1=$AA_IM[Z]\nG0 X=R1\n"), (Messages{"p.mpf:2:6: error: X depends on $AA_IM, which is not known "
+                                                       "outside the machine; a value was expected [unknown-value]"}));
+  EXPECT_EQ(
+      said("G0 X10 Y\n"),
+      (Messages{"p.mpf:1:8: error: Y has no number; a number, or = and an expression, was expected [no-number]"}));
+  EXPECT_EQ(
+      said("M5 G1234\n"),
+      (Messages{"p.mpf:1:4: error: G1234 is not a G function of a Sinumerik program that Camber knows [unknown-g]"}));
   EXPECT_EQ(said("R1=1/0\n"), (Messages{"p.mpf:1:4: error: a division by zero [expression]"}));
   EXPECT_EQ(said("WHEN TRUE DO POS[X]=10\n"),
-            (Messages{"p.mpf:1:1: error: a synchronized action that moves an axis is not supported; the moves as blocks of their own were expected [not-supported]"}));
-  EXPECT_EQ(said("SETAL(65000)\n"), (Messages{"p.mpf:1:1: error: the program reaches SETAL(65000), an alarm of its own, which stops the machine [alarm]"}));
+            (Messages{"p.mpf:1:1: error: a synchronized action that moves an axis is not supported; the moves as "
+                      "blocks of their own were expected [not-supported]"}));
+  EXPECT_EQ(
+      said("SETAL(65000)\n"),
+      (Messages{
+          "p.mpf:1:1: error: the program reaches SETAL(65000), an alarm of its own, which stops the machine [alarm]"}));
 }
 
 TEST(Siemens, AnEndlessLoopIsAnError) {
@@ -261,22 +290,34 @@ TEST(Siemens, AnEndlessLoopIsAnError) {
 
 TEST(Siemens, EditsKeepTheFormOfTheWords) {
   const std::string text =
-      "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\nN10 G0 X0 Y0 Z0\nN20 G1 X=10 Y5 F200 ; cut\nN30 X=IC(10)\nN40 G3 X30 Y15 CR=10\nN50 G2 X40 Y25 I=AC(40) J=AC(15)\nN60 G1 X=R1 Y=3\nN70 M30\n";
+      "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\nN10 G0 X0 Y0 Z0\nN20 G1 X=10 Y5 F200 ; cut\nN30 X=IC(10)\nN40 G3 X30 Y15 "
+      "CR=10\nN50 G2 X40 Y25 I=AC(40) J=AC(15)\nN60 G1 X=R1 Y=3\nN70 M30\n";
   const Read r = read_siemens(text);
   EXPECT_EQ(r.messages, Messages{});
   std::vector<MoveEdit> edits;
   for (std::uint32_t m = 1; m < 6; ++m) {
     MoveEdit edit{.move = m, .end_mm = r.moves.moves[m].end_mm + Vec3(0.1, 0.2, 0)};
-    if (r.moves.moves[m].arc != Move::kNoArc) edit.center_mm = r.moves.arcs[r.moves.moves[m].arc].center_mm + Vec3(0.1, 0.2, 0);
+    if (r.moves.moves[m].arc != Move::kNoArc)
+      edit.center_mm = r.moves.arcs[r.moves.moves[m].arc].center_mm + Vec3(0.1, 0.2, 0);
     edits.push_back(edit);
   }
   edits[0].via = {{Vec3(5, 2.6, 0)}};
   const Emission out = emit_edits(r.program, r.moves, edits, {.header_comment = "changed"});
   EXPECT_EQ(out.text,
-            "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\n; changed\nN10 G0 X0 Y0 Z0\nN20 G1 X=5 Y2.6 F200 ; cut\nX10.1 Y5.2\nN30 X=IC(10)\nN40 G3 X30.1 Y15.2 CR=10\nN50 G2 X40.1 Y25.2 I=AC(40.1) "
+            "%_N_P_MPF\n;$PATH=/_N_MPF_DIR\n; changed\nN10 G0 X0 Y0 Z0\nN20 G1 X=5 Y2.6 F200 ; cut\nX10.1 Y5.2\nN30 "
+            "X=IC(10)\nN40 G3 X30.1 Y15.2 CR=10\nN50 G2 X40.1 Y25.2 I=AC(40.1) "
             "J=AC(15.2)\nN60 G1 X=R1 Y=3\nN70 M30\n");
   ASSERT_EQ(out.not_made.size(), 1U);
   EXPECT_EQ(out.not_made[0].why, EmitGap::not_in_text);
+}
+
+TEST(Siemens, HolesStayWhereTheyAreBehindAnEdit) {
+  const std::string text =
+      "G0 X0 Y0 Z50\nG1 X5 Y5 F100\nMCALL CYCLE81(20,0,2,-5)\nX10\nX20 Y20\nMCALL\nG1 X30\nG0 Z50\nM30\n";
+  const Read r = read_siemens(text);
+  const MoveEdit edit{.move = 1, .end_mm = Vec3(5.1, 5.2, 50)};
+  EXPECT_EQ(emit(r.program, r.moves, std::span(&edit, 1), {}),
+            "G0 X0 Y0 Z50\nG1 X5.1 Y5.2 F100\nMCALL CYCLE81(20,0,2,-5)\nX10 Y5\nX20 Y20\nMCALL\nG1 X30\nG0 Z50\nM30\n");
 }
 
 TEST(Siemens, EveryWordStandsInThePage) {
@@ -285,7 +326,8 @@ TEST(Siemens, EveryWordStandsInThePage) {
   bool words = false;
   for (std::string line; std::getline(in, line);) {
     words = words || line == "## Words";
-    if (words && line.starts_with("| ") && !line.starts_with("| word ")) documented.insert(line.substr(2, line.find(" |", 2) - 2));
+    if (words && line.starts_with("| ") && !line.starts_with("| word "))
+      documented.insert(line.substr(2, line.find(" |", 2) - 2));
   }
   for (const siemens::WordRow& row : siemens::word_rows()) known.insert(std::string(row.name));
   EXPECT_EQ(documented, known);
