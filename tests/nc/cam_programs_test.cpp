@@ -66,9 +66,10 @@ TEST(CamPrograms, HaasDrillingReadsWithAWarning) {
 }
 
 TEST(CamPrograms, WhatIsNotReadSaysSo) {
-  EXPECT_EQ(said_of("nc/elmoe_keychain_840d.mpf"),
-            Messages{"elmoe_keychain_840d.mpf:3:5: error: DEF belongs to a Siemens Sinumerik program, which is not "
-                     "supported; Camber reads programs for Fanuc, Haas, Mazak EIA and LinuxCNC [siemens]"});
+  EXPECT_EQ(
+      said_of("nc/elmoe_keychain_840d.mpf"),
+      Messages{"elmoe_keychain_840d.mpf:3:5: error: DEF belongs to Siemens Sinumerik programs, and this text is read "
+               "as ISO G code; --dialect siemens reads it in that language [siemens]"});
   EXPECT_EQ(
       said_of("nc/gpr_mazak_sample.eia"),
       (Messages{"gpr_mazak_sample.eia:2:1: error: G53.5 is not a G code that Camber knows [unknown-g]",
