@@ -93,6 +93,8 @@ bool Klartext::step() {
     execute(s);
   } catch (const FormulaError& e) {
     error(e.offset, e.check, e.what());
+    // Where a value or a jump is lacking, loops may never end: what follows says nothing more.
+    if (s.kind >= Kind::call_label && s.kind <= Kind::function) return false;
   }
   return !levels_.empty();
 }

@@ -131,7 +131,7 @@ class Reader {
     };
     trim();
     if (last > from && text_[last - 1] == '~') return true;
-    const std::size_t comment = text_.find(';', from);
+    const std::size_t comment = from + std::min(text_.substr(from, end - from).find(';'), end - from);
     if (comment >= end) return false;
     last = comment;
     trim();
