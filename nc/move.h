@@ -85,9 +85,6 @@ struct Move {
   /// words have numbers. Only such blocks may be edited. False in loops, in subprograms called more than once or from a
   /// file of their own, for expressions, under G41 and G42 and in polar coordinates.
   bool editable : 1 = true;
-  /// What follows depends on where it ends (an arc tangent to it, a polar coordinate): not editable, but where an edit
-  /// before it has moved its start, its words may be changed so that it still ends there.
-  bool end_fixed : 1 = false;
   bool feed_given : 1 = false;        ///< an F word or a feed mode was read since the previous move, up to this block
   bool feed_by_variable : 1 = false;  ///< the modal feed was set by an expression (F#1)
   /// Only on machines with rotary axes. Bit i: the programmed coordinate X, Y, Z of the end does not follow from the
@@ -117,6 +114,9 @@ struct Interpretation {
   std::vector<RotaryTarget> rotary;            ///< of the moves that turn rotary axes, in order; all axes start at 0
   /// Origin of the machine's coordinates in the frame of the moves, where the work offset is known.
   std::optional<Vec3> machine_origin_mm{};
+  /// Moves on the ends of which others rely (an arc tangent to it, a polar coordinate), ascending: not editable, but
+  /// where an edit before one has moved its start, its words may be changed so that it still ends there.
+  std::vector<std::uint32_t> fixed_ends{};
   std::map<int, std::string> tool_names{};  ///< of tools that the program calls by name, by their number in states
   std::optional<ProgramStock> stock{};
   bool whole_numbers_are_increments = false;  ///< how the program's numbers without a decimal point were read

@@ -39,6 +39,7 @@ Emitter::Emitter(const Program& program, const Interpretation& moves, std::span<
       style_(style_of(program)),
       text_(program, *rules_),
       feeds_(program, moves) {
+  rules_->adapt(style_);
   assert(std::ranges::is_sorted(edits, {}, &MoveEdit::move));
   assert(edits.empty() || edits.back().move < moves.moves.size());
   if (std::any_of(edits.begin(), edits.end(), asks_for_feed)) feed_is_read_ = rules_->reads_feed();
@@ -74,7 +75,8 @@ void Emitter::run_block(std::size_t first, std::size_t end) {
     return;
   }
   if (move.kind == MoveKind::dwell) return;
-  if (!move.editable && !move.end_fixed) {
+  const bool end_fixed = std::ranges::binary_search(moves_.fixed_ends, static_cast<std::uint32_t>(first));
+  if (!move.editable && !end_fixed) {
     if (!feed_is_right) restore_feed_on_own_line();
     put_lines_before(move.block);
     pass_over(first, end);
@@ -117,7 +119,7 @@ void Emitter::run_block_in_program(const Move& move, const MoveEdit* edit, const
     leave_for_machine_place(writer, move, last_end);
   } else if (moves_.moves[end_ - 1].canned) {  // all of its moves, or those behind the way to the hole
     drill(writer, move, last_end, normal);
-  } else if (move.kind == MoveKind::rapid && !edit && !move.end_fixed) {
+  } else if (move.kind == MoveKind::rapid && !edit && move.editable) {
     go_rapidly(writer, move);
   } else if (move.kind == MoveKind::arc) {
     go_on_arc(writer, move, edit);

@@ -74,7 +74,7 @@ std::string_view number_of(const Program& program, const Word& w) {
 }  // namespace
 
 int decimals_of(std::string_view number) {
-  const std::size_t point = number.find('.');
+  const std::size_t point = number.find_first_of(".,");
   if (point == std::string_view::npos) return -1;
   return static_cast<int>(std::count_if(number.begin() + static_cast<std::ptrdiff_t>(point), number.end(),
                                         [](char c) { return c >= '0' && c <= '9'; }));
@@ -136,6 +136,10 @@ double rounded(double value, int decimals) {
 
 std::string format_number(double value, int decimals, const NumberStyle& style, std::string_view like) {
   const double r = rounded(value, decimals);
+  std::string pointed(like);
+  const bool comma = pointed.find(',') != std::string::npos || (style.comma && pointed.find('.') == std::string::npos);
+  std::ranges::replace(pointed, ',', '.');
+  like = pointed;
   std::string out = fmt::format("{:.{}f}", std::abs(r), decimals);
   if (out.find('.') == std::string::npos) out += '.';
   const std::size_t point = out.find('.');
@@ -152,8 +156,10 @@ std::string format_number(double value, int decimals, const NumberStyle& style, 
   }
   const bool zero = like.empty() ? style.leading_zero : has_leading_zero(like, old).value_or(style.leading_zero);
   if (!zero && r != 0 && std::abs(r) < 1) out.erase(0, 1);
+  if (comma) std::ranges::replace(out, '.', ',');
   if (r < 0) return "-" + out;
-  return !like.empty() && like.front() == '+' ? "+" + out : out;
+  const bool plus = like.empty() || like.front() == '-' ? style.plus : like.front() == '+';
+  return plus ? "+" + out : out;
 }
 
 }  // namespace camber::nc

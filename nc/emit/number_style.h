@@ -15,6 +15,8 @@ struct NumberStyle {
   int padded_decimals = 0;               ///< every number has at least so many decimals: 12.500
   WholeStyle whole = WholeStyle::point;  ///< whole numbers, where nothing is padded
   bool blanks = false;                   ///< blanks between the words of a block
+  bool plus = false;                     ///< positive numbers have a sign: X+12.5
+  bool comma = false;                    ///< 12,5
 };
 
 /// What most of the coordinates of the program do.

@@ -46,6 +46,8 @@ class TextRules {
   virtual bool incremental(const ModalState& state, const Word* word) const = 0;
 
   // Text
+  /// What style_of does not see of the program's numbers.
+  virtual void adapt(NumberStyle&) const {}
   /// A new word: "X12.5", "X+12.5", "CR=8". `number` is in the style of the program.
   virtual std::string new_word(std::uint32_t block, char letter, const std::string& number) const = 0;
   /// Where a new word goes in the block, and whether the blank that parts it from its neighbour comes before it.

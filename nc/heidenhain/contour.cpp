@@ -17,8 +17,9 @@ void Klartext::set_corner(const Statement& s, const BlockValues& b) {
   const bool chamfer = s.kind == Kind::chamfer;
   const char* name = chamfer ? "CHF" : "RND";
   if (!b.radius || *b.radius < 0)
-    return error(s.begin, "corner", fmt::format("{} without a {}; {} was expected", name, chamfer ? "length" : "radius",
-                                                chamfer ? "CHF 2" : "RND R2"));
+    return error(s.begin, "corner",
+                 fmt::format("{} without a {}; {} was expected", name, chamfer ? "length" : "radius",
+                             chamfer ? "CHF 2" : "RND R2"));
   const bool moved = !out_.moves.empty() && !out_.moves.back().canned && !corner_.waits &&
                      (out_.moves.back().kind == MoveKind::linear || out_.moves.back().kind == MoveKind::arc);
   if (!moved)
@@ -48,19 +49,20 @@ void Klartext::after_contour_move(std::size_t first) {
   a.editable = b.editable = false;
   fix_end(before);
   if (first != before + 1 || (b.kind != MoveKind::linear && b.kind != MoveKind::arc) || b.canned || b.reference)
-    return error(corner.offset, "corner",
-                 fmt::format("{} is not followed by a line or an arc of the contour; L, C, CR or CT was expected",
-                             corner.text));
+    return error(
+        corner.offset, "corner",
+        fmt::format("{} is not followed by a line or an arc of the contour; L, C, CR or CT was expected", corner.text));
   if (!(out_.frame_of(a) == out_.frame_of(b)))
-    return error(corner.offset, "corner", fmt::format("{} before a block in another frame; the same was expected", corner.text));
-  const CornerCutResult cut =
-      cut_corner(out_, {before, first, plane_of_axis(tool_axis_), "of the tool axis", corner.chamfer, corner.size_mm,
-                        corner.text});
+    return error(corner.offset, "corner",
+                 fmt::format("{} before a block in another frame; the same was expected", corner.text));
+  const CornerCutResult cut = cut_corner(out_, {before, first, plane_of_axis(tool_axis_), "of the tool axis",
+                                                corner.chamfer, corner.size_mm, corner.text});
   if (!cut.error.empty()) return error(corner.offset, "corner", cut.error);
   if (!cut.between) return;
   Move between = *cut.between;
   if (corner.feed_mm_per_s) between.feed_mm_per_s = *corner.feed_mm_per_s;
   out_.moves.insert(out_.moves.begin() + static_cast<std::ptrdiff_t>(first), between);
+  moved_behind(first, 1);
   for (auto e = out_.events.rbegin(); e != out_.events.rend() && e->before_move >= first; ++e)
     if (e->block == b.block) ++e->before_move;
 }
@@ -82,8 +84,8 @@ std::optional<Klartext::Form> Klartext::read_form(const Statement& s, bool& pola
   return std::nullopt;
 }
 
-/// Where a line from `outside` runs onto the circle in its sense, or a line to there leaves it. In the plane of the tool
-/// axis.
+/// Where a line from `outside` runs onto the circle in its sense, or a line to there leaves it. In the plane of the
+/// tool axis.
 Vec3 Klartext::tangent_point(const Vec3& centre, double radius, double sense, const Vec3& outside, bool arrives) const {
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   const Vec2 c(centre[axes.first], centre[axes.second]);
@@ -115,7 +117,8 @@ void Klartext::start_approach(const Statement& s, const BlockValues& b) {
   a.offset = s.begin;
   a.block = block_;
   const bool line = *form == Form::tangent_line || *form == Form::normal_line;
-  if (line && a.length_mm == 0) return error(s.begin, "approach", "APPR on a line without its length; LEN was expected");
+  if (line && a.length_mm == 0)
+    return error(s.begin, "approach", "APPR on a line without its length; LEN was expected");
   if (!line && a.radius_mm == 0) return error(s.begin, "approach", "APPR on an arc without its radius; R was expected");
   if (*form == Form::arc && a.angle_rad == 0)
     return error(s.begin, "approach", "APPR CT without the angle of its arc; CCA was expected");
@@ -136,7 +139,8 @@ void Klartext::finish_approach(std::size_t contour) {
   Vec3 along = frame_.inverse * direction_at(out_, out_.moves[contour], 0);
   along[axes.normal] = 0;
   if (along.norm() < 1e-12)
-    return error(a.offset, "approach", "APPR is followed by a block that does not move in the plane; a contour was expected");
+    return error(a.offset, "approach",
+                 "APPR is followed by a block that does not move in the plane; a contour was expected");
   along.normalize();
   Vec3 left = Vec3::Zero();
   left[axes.first] = -along[axes.second];
@@ -146,7 +150,7 @@ void Klartext::finish_approach(std::size_t contour) {
   const auto add = [&](const Vec3& to, std::optional<Arc> arc) {
     Move move = out_.moves[contour];
     move.block = a.block;
-    move.editable = move.end_fixed = move.feed_given = false;
+    move.editable = move.feed_given = false;
     move.start_mm = way.empty() ? frame_.from_program(a.from_mm) : way.back().end_mm;
     move.end_mm = frame_.from_program(to);
     move.feed_mm_per_s = a.feed_mm_per_s;
@@ -180,7 +184,8 @@ void Klartext::finish_approach(std::size_t contour) {
       begin[axes.second] = arc.center_mm[axes.second] + n * end.x() + c * end.y();
     } else {
       if (relative(a.from_mm).norm() <= radius)
-        return error(a.offset, "approach", "APPR LCT from inside its own arc; a smaller radius or a start further away was expected");
+        return error(a.offset, "approach",
+                     "APPR LCT from inside its own arc; a smaller radius or a start further away was expected");
       begin = tangent_point(arc.center_mm, radius, sense, a.from_mm, true);
       begin[axes.normal] = a.start_mm[axes.normal];
       sweep = turn_from(relative(begin), relative(a.start_mm), sense);
@@ -192,9 +197,9 @@ void Klartext::finish_approach(std::size_t contour) {
   out_.moves[contour].start_mm = way.back().end_mm;
   out_.moves[contour].editable = false;
   out_.moves.insert(out_.moves.begin() + static_cast<std::ptrdiff_t>(contour), way.begin(), way.end());
+  moved_behind(contour, way.size());
   for (auto e = out_.events.rbegin(); e != out_.events.rend() && e->before_move >= contour; ++e)
-    if (e->block == out_.moves[contour + way.size()].block)
-      e->before_move += static_cast<std::uint32_t>(way.size());
+    if (e->block == out_.moves[contour + way.size()].block) e->before_move += static_cast<std::uint32_t>(way.size());
 }
 
 /// DEP: along the tangent, across it, or on an arc; radius compensation ends behind it.
@@ -205,8 +210,7 @@ void Klartext::depart(const Statement& s, const BlockValues& b) {
   if (corner_.waits) corner_ = {};
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   const Vec3 along = last_direction(), from = programmed();
-  if (along == Vec3::Zero())
-    return error(s.begin, "approach", "DEP without a contour before it");
+  if (along == Vec3::Zero()) return error(s.begin, "approach", "DEP without a contour before it");
   fix_last_end();
   editable_ = false;
   Vec3 left = Vec3::Zero();
@@ -285,8 +289,9 @@ void Klartext::set_compensation(int code, std::size_t offset) {
   if (!state_.cutter_radius || not_editable_told_) return;
   not_editable_told_ = true;
   warn(offset, "not-editable",
-       fmt::format("the path under {} is computed here, cutter radius {:.4f} mm; compensation leaves these moves unchanged",
-                   left ? "RL" : "RR", std::abs(*radius)));
+       fmt::format(
+           "the path under {} is computed here, cutter radius {:.4f} mm; compensation leaves these moves unchanged",
+           left ? "RL" : "RR", std::abs(*radius)));
 }
 
 void Klartext::end_compensation() {
@@ -307,14 +312,15 @@ void Klartext::end_compensation() {
   cutter.radius_mm = radius.radius_mm;
   cutter.left = radius.left == (facing > 0);
   cutter.plane = radius.plane;
-  cutter.corner_lines = false;          // outside corners on arcs
-  cutter.entry_square_to_next = true;   // the first point is reached square to the contour
+  cutter.corner_lines = false;         // outside corners on arcs
+  cutter.entry_square_to_next = true;  // the first point is reached square to the contour
   cutter.moves_without_plane_motion = 1000;
   cutter.name = radius.left ? "RL" : "RR";
   const CutterRadiusResult result = compensate_radius(out_, radius.first_move, cutter);
   for (const CutterRadiusProblem& problem : result.problems)
-    error(file().blocks.size() > problem.block && &file() == &main_ ? main_.blocks[problem.block].offset : radius.offset,
-          "cutter-radius", problem.message);
+    error(
+        file().blocks.size() > problem.block && &file() == &main_ ? main_.blocks[problem.block].offset : radius.offset,
+        "cutter-radius", problem.message);
   beside_mm_ = result.end_mm - position_mm_;
   leaving_ = result.problems.empty() && beside_mm_ != Vec3::Zero();
 }

@@ -27,7 +27,8 @@ std::optional<double> Cursor::number() {
     }
   }
   if (!any) return std::nullopt;
-  if (i + 1 < end_ && upper(text_[i]) == 'E' && (is_digit(text_[i + 1]) || text_[i + 1] == '-' || text_[i + 1] == '+')) {
+  if (i + 1 < end_ && upper(text_[i]) == 'E' &&
+      (is_digit(text_[i + 1]) || text_[i + 1] == '-' || text_[i + 1] == '+')) {
     std::size_t j = i + 1 + (is_digit(text_[i + 1]) ? 0 : 1);
     if (j < end_ && is_digit(text_[j])) {
       digits += 'e';

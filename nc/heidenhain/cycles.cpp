@@ -54,7 +54,8 @@ void Klartext::define_cycle(const Statement& s) {
     part = at.integer().value_or(0);
   }
   if (*number < 200 && part < 0 && *number != 247) part = 0;
-  const auto refused = std::ranges::find_if(kRefused, [&](const Named& n) { return *number >= n.first && *number <= n.last; });
+  const auto refused =
+      std::ranges::find_if(kRefused, [&](const Named& n) { return *number >= n.first && *number <= n.last; });
   if (refused != kRefused.end() && part <= 0)
     error(s.begin, "not-supported",
           fmt::format("CYCL DEF {} ({}) is not supported; {}", *number, refused->what, refused->instead));
@@ -87,7 +88,8 @@ void Klartext::define_cycle(const Statement& s) {
     if (preset_ >= 0 && preset != preset_ && !preset_told_) {
       preset_told_ = true;
       warn(s.begin, "work-offsets",
-           "the program uses more than one preset (CYCL DEF 247); their distance is not known, and all are treated as one "
+           "the program uses more than one preset (CYCL DEF 247); their distance is not known, and all are treated as "
+           "one "
            "frame");
     }
     preset_ = preset;
@@ -96,12 +98,14 @@ void Klartext::define_cycle(const Statement& s) {
   if (*number == 220 || *number == 221) return run_pattern(*number);
   if (*number >= 300) {
     warn(s.begin, "machine-cycle",
-         fmt::format("CYCL DEF {} is a cycle of the machine's maker; what it does is not known, and it is passed over", *number));
+         fmt::format("CYCL DEF {} is a cycle of the machine's maker; what it does is not known, and it is passed over",
+                     *number));
     return;
   }
   if (std::ranges::find(kMade, *number) == kMade.end())
-    return error(s.begin, "not-supported",
-                 fmt::format("CYCL DEF {} is not supported; drilling cycles 200 to 209, 240 and 241 were expected", *number));
+    return error(
+        s.begin, "not-supported",
+        fmt::format("CYCL DEF {} is not supported; drilling cycles 200 to 209, 240 and 241 were expected", *number));
   cycle_ = {};
   cycle_.number = *number;
   cycle_.offset = s.begin;
@@ -151,9 +155,10 @@ void Klartext::define_old_cycle(int number, int part, Cursor at, const Statement
     return;
   }
   if (number != 9 && std::ranges::find(kMade, number) == kMade.end())
-    return error(s.begin, "not-supported", fmt::format("CYCL DEF {} is not supported; cycles 1, 2, 4, 5, 7 to 13, 17, 19, 26, "
-                                                       "32 or 200 to 209 were expected",
-                                                       number),
+    return error(s.begin, "not-supported",
+                 fmt::format("CYCL DEF {} is not supported; cycles 1, 2, 4, 5, 7 to 13, 17, 19, 26, "
+                             "32 or 200 to 209 were expected",
+                             number),
                  fmt::format("cycle {}", number));
   if (part == 0) {
     if (number == 9) return;
@@ -313,7 +318,8 @@ void Klartext::run_cycle_call(const Statement& s) {
   }
   if (at.accept("PAT")) {
     read_rest(nullptr);
-    if (pattern_.empty()) throw FormulaError(s.begin, "cycle", "CYCL CALL PAT without a pattern; PATTERN DEF was expected before");
+    if (pattern_.empty())
+      throw FormulaError(s.begin, "cycle", "CYCL CALL PAT without a pattern; PATTERN DEF was expected before");
     with_functions([&] {
       const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
       for (const Vec3& place : pattern_) {
@@ -398,8 +404,10 @@ void Klartext::drill_hole(const Hole& h) {
   if (h.start_mm < 0) go(MoveKind::linear, begin + std::min(h.clearance_mm, top - begin), h.pre_feed_mm_per_s);
   double depth = h.start_mm < 0 ? h.surface_mm + h.start_mm : h.surface_mm;
   double peck = h.peck_mm > 0 ? h.peck_mm : depth - bottom;
-  if ((depth - bottom) / std::max(1e-12, h.less_mm > 0 ? std::min(peck, std::max(h.least_mm, 1e-12)) : peck) > kMaxPecks)
-    throw FormulaError(cycle_.offset, "cycle", "the cycle would peck more than 100000 times; a larger Q202 was expected");
+  if ((depth - bottom) / std::max(1e-12, h.less_mm > 0 ? std::min(peck, std::max(h.least_mm, 1e-12)) : peck) >
+      kMaxPecks)
+    throw FormulaError(cycle_.offset, "cycle",
+                       "the cycle would peck more than 100000 times; a larger Q202 was expected");
   int breaks = h.breaks;
   while (depth > bottom) {
     const double next = std::max(depth - peck, bottom);
@@ -472,7 +480,8 @@ void Klartext::drill(int number) {
       const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
       // 1: the tool leaves the wall towards minus of the first axis, 2: of the second, 3 and 4: towards plus.
       if (direction >= 1 && direction <= 4)
-        h.off_mm[direction % 2 == 1 ? axes.first : axes.second] = direction <= 2 ? -kAboveLastDepthMm : kAboveLastDepthMm;
+        h.off_mm[direction % 2 == 1 ? axes.first : axes.second] =
+            direction <= 2 ? -kAboveLastDepthMm : kAboveLastDepthMm;
       cycle_g_ = 76;
       break;
     }
@@ -564,7 +573,8 @@ void Klartext::bore_back() {
   Vec3 shift = Vec3::Zero();
   if (direction >= 1 && direction <= 4)
     shift[direction % 2 == 1 ? axes.first : axes.second] = direction <= 2 ? -off : off;
-  if (feed <= 0) throw FormulaError(cycle_.offset, "feed-missing", "cycle 204 has no feed; Q254 greater than zero was expected");
+  if (feed <= 0)
+    throw FormulaError(cycle_.offset, "feed-missing", "cycle 204 has no feed; Q254 greater than zero was expected");
   cycle_g_ = 87;
   prepare_cutting("a cycle", 0);
   const auto go = [&](double height, double at_feed) {
@@ -644,7 +654,8 @@ void Klartext::cycle_circle(const Vec3& centre, double sweep_rad, double end_hei
   }
   end[axes.normal] = end_height_mm;
   const auto in_moves = frame_.plain ? std::optional(arc) : from_program(frame_, arc);
-  if (!in_moves) throw FormulaError(cycle_.offset, "scaling", "a circle of a cycle under a scale of single axes is an ellipse");
+  if (!in_moves)
+    throw FormulaError(cycle_.offset, "scaling", "a circle of a cycle under a scale of single axes is an ellipse");
   out_.arcs.push_back(*in_moves);
   Move& move = add_move(MoveKind::arc, end_in_moves(end, 7));
   move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
@@ -657,25 +668,29 @@ void Klartext::cycle_circle(const Vec3& centre, double sweep_rad, double end_hei
 /// Cycle 208: a helix down to the depth, a full circle, back to the middle.
 void Klartext::mill_bore() {
   const double unit = unit_mm();
-  const double surface = q_if_set(203).value_or(0) * unit, top = surface + q(200) * unit, bottom = surface + q(201) * unit;
+  const double surface = q_if_set(203).value_or(0) * unit, top = surface + q(200) * unit,
+               bottom = surface + q(201) * unit;
   const double feed = feed_q(206), pitch = std::abs(q(334)) * unit, diameter = q(335) * unit;
   const bool climb = q_if_set(351).value_or(1) >= 0;
   const double high = std::max(top, surface + q_if_set(204).value_or(0) * unit);
   const auto tool = tool_radius_mm();
   if (feed <= 0 || std::isinf(feed))
     throw FormulaError(cycle_.offset, "feed-missing", "cycle 208 has no feed; Q206 greater than zero was expected");
-  if (bottom >= top) throw FormulaError(cycle_.offset, "cycle", "the depth of cycle 208 is positive; a negative one was expected");
+  if (bottom >= top)
+    throw FormulaError(cycle_.offset, "cycle", "the depth of cycle 208 is positive; a negative one was expected");
   prepare_cutting("a cycle", 0);
   if (!tool)
     warn(cycle_.offset, "radius-unknown",
-         fmt::format("cycle 208 needs the radius of tool {}, which nothing gives (TOOL DEF with R); its helix is read as a "
-                     "plunge at its middle",
-                     state_.tool),
+         fmt::format(
+             "cycle 208 needs the radius of tool {}, which nothing gives (TOOL DEF with R); its helix is read as a "
+             "plunge at its middle",
+             state_.tool),
          "cycle 208");
   const double radius = tool ? 0.5 * diameter - *tool : 0;
   if (tool && radius < 0)
-    throw FormulaError(cycle_.offset, "cycle",
-                       fmt::format("the hole of cycle 208 ({:.4f} mm) is smaller than the tool ({:.4f} mm)", diameter, 2 * *tool));
+    throw FormulaError(
+        cycle_.offset, "cycle",
+        fmt::format("the hole of cycle 208 ({:.4f} mm) is smaller than the tool ({:.4f} mm)", diameter, 2 * *tool));
   const Vec3 middle = programmed();
   const auto go = [&](MoveKind kind, double height) {
     Vec3 end = programmed();
@@ -688,7 +703,9 @@ void Klartext::mill_bore() {
     beside[axes_of(plane_of_axis(tool_axis_)).first] += radius;
     cycle_move(MoveKind::linear, beside, feed);
     const double turns = pitch > 0 ? (top - bottom) / pitch : 1;
-    if (turns > kMaxPecks) throw FormulaError(cycle_.offset, "cycle", "cycle 208 would make more than 100000 turns; a larger Q334 was expected");
+    if (turns > kMaxPecks)
+      throw FormulaError(cycle_.offset, "cycle",
+                         "cycle 208 would make more than 100000 turns; a larger Q334 was expected");
     const double sense = climb ? 1 : -1;
     cycle_circle(middle, sense * 2 * kPi * turns, bottom, feed);
     cycle_circle(middle, sense * 2 * kPi, bottom, feed);
@@ -707,10 +724,11 @@ void Klartext::mill_old_pocket() {
   const bool round = cycle_.number == 5;
   const auto tool = tool_radius_mm();
   if (!tool || *tool <= 0)
-    throw FormulaError(cycle_.offset, "radius-unknown",
-                       fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
-                                   "with R, or the finished path, was expected",
-                                   cycle_.number, state_.tool, state_.tool));
+    throw FormulaError(
+        cycle_.offset, "radius-unknown",
+        fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
+                    "with R, or the finished path, was expected",
+                    cycle_.number, state_.tool, state_.tool));
   const auto value = [&](int part) {
     const auto found = cycle_.values.find(part);
     if (found == cycle_.values.end())
@@ -723,8 +741,10 @@ void Klartext::mill_old_pocket() {
   const double plunge = cycle_.feeds.contains(3) ? cycle_.feeds[3] : feed_.value_or(0);
   const int feed_part = round ? 5 : 6;
   const double feed = cycle_.feeds.contains(feed_part) ? cycle_.feeds[feed_part] : feed_.value_or(0);
-  if (plunge <= 0 || feed <= 0) throw FormulaError(cycle_.offset, "feed-missing", "the pocket has no feed; F was expected in its parts");
-  if (step <= 0) throw FormulaError(cycle_.offset, "cycle", "the pocket has no depth of each cut; its part 3 was expected");
+  if (plunge <= 0 || feed <= 0)
+    throw FormulaError(cycle_.offset, "feed-missing", "the pocket has no feed; F was expected in its parts");
+  if (step <= 0)
+    throw FormulaError(cycle_.offset, "cycle", "the pocket has no depth of each cut; its part 3 was expected");
   const double half_x = round ? value(4) - *tool : 0.5 * std::abs(value(4)) - *tool;
   const double half_y = round ? half_x : 0.5 * std::abs(value(5)) - *tool;
   if (half_x < -1e-9 || half_y < -1e-9)
@@ -773,7 +793,8 @@ void Klartext::mill_old_pocket() {
 void Klartext::run_pattern(int number) {
   cycle_.offset = statement_->begin;
   if (cycle_.number < 0)
-    return error(statement_->begin, "cycle", fmt::format("cycle {} repeats a cycle and none is defined; CYCL DEF was expected before", number));
+    return error(statement_->begin, "cycle",
+                 fmt::format("cycle {} repeats a cycle and none is defined; CYCL DEF was expected before", number));
   const double unit = unit_mm();
   const double surface = q_if_set(203).value_or(0) * unit, clearance = q(200) * unit;
   const double second = q_if_set(204).value_or(0) * unit;
@@ -783,7 +804,8 @@ void Klartext::run_pattern(int number) {
   const auto count_of = [&](int parameter) {
     const double count = q(parameter);
     if (count < 1 || count > 100000)
-      throw FormulaError(statement_->begin, "cycle", fmt::format("Q{} is {}; a number of holes was expected", parameter, count));
+      throw FormulaError(statement_->begin, "cycle",
+                         fmt::format("Q{} is {}; a number of holes was expected", parameter, count));
     return static_cast<int>(std::lround(count));
   };
   if (number == 220) {
@@ -797,18 +819,18 @@ void Klartext::run_pattern(int number) {
       angle = count > 1 ? all / (whole ? count : count - 1) : 0;
     }
     for (int i = 0; i < count; ++i) {
-      const double a = rad_from_deg(first + i * angle);
-      places.push_back(middle + radius * Vec2(std::cos(a), std::sin(a)));
+      places.push_back(middle + radius * direction_at_deg(first + i * angle));
     }
   } else {
     const Vec2 start(q(225) * unit, q(226) * unit);
-    const double dx = q(237) * unit, dy = q(238) * unit, turn = rad_from_deg(q_if_set(224).value_or(0));
+    const double dx = q(237) * unit, dy = q(238) * unit;
+    const Vec2 along = direction_at_deg(q_if_set(224).value_or(0));
     const int columns = count_of(242), rows = count_of(243);
     for (int row = 0; row < rows; ++row)
       for (int i = 0; i < columns; ++i) {
         const int column = row % 2 == 0 ? i : columns - 1 - i;
         const Vec2 p(column * dx, row * dy);
-        places.push_back(start + Vec2(std::cos(turn) * p.x() - std::sin(turn) * p.y(), std::sin(turn) * p.x() + std::cos(turn) * p.y()));
+        places.push_back(start + Vec2(along.x() * p.x() - along.y() * p.y(), along.y() * p.x() + along.x() * p.y()));
       }
   }
   const bool editable = std::exchange(editable_, false);
@@ -848,7 +870,8 @@ void Klartext::define_pattern(const Statement& s) {
     while (at.more() && at.peek() != ')') {
       const std::size_t here = at.offset();
       const std::string word = at.letters();
-      if (word.empty()) throw FormulaError(here, "cycle", fmt::format("{} in PATTERN DEF; X, Y or Z was expected", at.word()));
+      if (word.empty())
+        throw FormulaError(here, "cycle", fmt::format("{} in PATTERN DEF; X, Y or Z was expected", at.word()));
       at.advance(word.size());
       values[word] = known(read_value(at, parameters_), here);
     }
@@ -868,12 +891,14 @@ void Klartext::define_pattern(const Statement& s) {
       pattern_.push_back(place);
     };
     const auto turned = [](const Vec2& p, double degrees) {
-      const double a = rad_from_deg(degrees);
-      return Vec2(std::cos(a) * p.x() - std::sin(a) * p.y(), std::sin(a) * p.x() + std::cos(a) * p.y());
+      const Vec2 d = direction_at_deg(degrees);
+      return Vec2(d.x() * p.x() - d.y() * p.y(), d.y() * p.x() + d.x() * p.y());
     };
     const auto count = [&](const char* name) {
       const double n = value(name);
-      if (n < 1 || n > 100000) throw FormulaError(begin, "cycle", fmt::format("{} of PATTERN DEF is {}; a number of places was expected", name, n));
+      if (n < 1 || n > 100000)
+        throw FormulaError(begin, "cycle",
+                           fmt::format("{} of PATTERN DEF is {}; a number of places was expected", name, n));
       return static_cast<int>(std::lround(n));
     };
     if (form == "POS") {
@@ -895,8 +920,10 @@ void Klartext::define_pattern(const Statement& s) {
       const double step = form == "CIRC" ? 360.0 / n : value("STEP");
       for (int i = 0; i < n; ++i) add(start + turned(Vec2(0.5 * value("D") * unit, 0), value("START") + i * step));
     } else {
-      throw FormulaError(begin, "not-supported",
-                         fmt::format("{} in PATTERN DEF is not supported; POS, ROW, PAT, FRAME, CIRC or PITCHCIRC was expected", form));
+      throw FormulaError(
+          begin, "not-supported",
+          fmt::format("{} in PATTERN DEF is not supported; POS, ROW, PAT, FRAME, CIRC or PITCHCIRC was expected",
+                      form));
     }
     if (pattern_.size() > 1'000'000) throw FormulaError(begin, "cycle", "a pattern of more than a million places");
   }

@@ -199,7 +199,8 @@ std::string Klartext::label_name(Cursor& at) {
     }
   }
   if (const auto number = at.integer()) return fmt::format("{}", *number);
-  throw FormulaError(offset, "label", "a label without a number or a name in quotes; LBL 1 or LBL \"NAME\" was expected");
+  throw FormulaError(offset, "label",
+                     "a label without a number or a name in quotes; LBL 1 or LBL \"NAME\" was expected");
 }
 
 void Klartext::jump(const std::string& label, std::size_t offset) {
@@ -328,8 +329,9 @@ void Klartext::end_program() {
 /// The value, unless only the machine knows it.
 double Klartext::known(double value, std::size_t offset) {
   if (std::isnan(value))
-    throw FormulaError(offset, "unknown-parameter",
-                       fmt::format("this depends on a parameter whose value is not known: {}", parameters_.why_unknown()));
+    throw FormulaError(
+        offset, "unknown-parameter",
+        fmt::format("this depends on a parameter whose value is not known: {}", parameters_.why_unknown()));
   return value;
 }
 
@@ -436,7 +438,8 @@ void Klartext::run_function(const Statement& s) {
     const std::size_t begin = at.offset();
     const double a = known(read_formula(at, parameters_), begin);
     std::string relation = at.letters();
-    if (relation == "IS") throw FormulaError(begin, "not-supported", "IS DEFINED is not supported; a comparison was expected");
+    if (relation == "IS")
+      throw FormulaError(begin, "not-supported", "IS DEFINED is not supported; a comparison was expected");
     at.advance(relation.size());
     const std::size_t second = at.offset();
     const double b = known(read_formula(at, parameters_), second);
@@ -507,8 +510,7 @@ void Klartext::run_function(const Statement& s) {
 
 void Klartext::read_blank_form(const Statement& s) {
   Cursor at = cursor(s);
-  if (!at.accept("FORM"))
-    return error(s.begin, "blank", "BLK without FORM; BLK FORM 0.1 was expected");
+  if (!at.accept("FORM")) return error(s.begin, "blank", "BLK without FORM; BLK FORM 0.1 was expected");
   if (at.accept("FILE"))
     return warn(s.begin, "no-effect", "BLK FORM FILE is read without effect; the stock is given in the job");
   if (at.accept("ROTATION"))
@@ -529,12 +531,13 @@ void Klartext::read_blank_form(const Statement& s) {
       else if (at.accept('L'))
         length = read_value(at, parameters_);
       else
-        throw FormulaError(at.offset(), "blank", fmt::format("{} in BLK FORM CYLINDER; R, L or DIST was expected", at.word()));
+        throw FormulaError(at.offset(), "blank",
+                           fmt::format("{} in BLK FORM CYLINDER; R, L or DIST was expected", at.word()));
     }
     if (axis != 'Z' || radius <= 0 || length <= 0 || out_.stock) return;
     const double unit = unit_mm();
-    out_.stock = ProgramStock{true, Vec3(-radius, -radius, distance - length) * unit, Vec3(radius, radius, distance) * unit,
-                              block_};
+    out_.stock = ProgramStock{true, Vec3(-radius, -radius, distance - length) * unit,
+                              Vec3(radius, radius, distance) * unit, block_};
     return;
   }
   const auto part = at.number();
@@ -570,12 +573,25 @@ void Klartext::read_blank_form(const Statement& s) {
 
 void Klartext::finish() {
   end_compensation();
+  place_stock();
   if (corner_.waits && !report_.has_errors())
     error(corner_.offset, "corner", fmt::format("{} is not followed by a further block of the contour", corner_.text));
   if (approach_.waits && !report_.has_errors())
     error(approach_.offset, "approach", "APPR is not followed by a block of the contour; L, C or CR was expected");
   for (Move& move : out_.moves)
-    if (runs_[move.block] > 1) move.editable = move.end_fixed = false;
+    if (runs_[move.block] > 1) move.editable = false;
+  // Where the text does not say the last move by itself, the one before it that it does say.
+  std::size_t done = 0;
+  std::ranges::sort(anchors_);
+  for (const std::size_t behind : anchors_) {
+    for (std::size_t i = std::min(behind, out_.moves.size()); i-- > done;) {
+      if (!out_.moves[i].editable || out_.moves[i].kind == MoveKind::dwell) continue;
+      out_.moves[i].editable = false;
+      out_.fixed_ends.push_back(static_cast<std::uint32_t>(i));
+      break;
+    }
+    done = std::max(done, behind);
+  }
   out_.tool_names = tool_numbers_.names();
 }
 

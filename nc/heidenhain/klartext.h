@@ -76,8 +76,8 @@ class Klartext {
   struct Level {
     const Program* file = nullptr;
     std::size_t next = 0;
-    bool is_program = true;           ///< else from LBL to LBL 0
-    std::uint32_t called_from = 0;    ///< Move::block of moves in other files
+    bool is_program = true;         ///< else from LBL to LBL 0
+    std::uint32_t called_from = 0;  ///< Move::block of moves in other files
   };
   struct Tool {
     std::optional<double> length_mm{}, radius_mm{};
@@ -102,7 +102,7 @@ class Klartext {
     std::uint32_t block = 0;
   };
   struct Cycle {
-    int number = -1;  ///< none
+    int number = -1;                 ///< none
     std::map<int, double> values{};  ///< of old cycles: by the number behind the point
     std::map<int, double> feeds{};
     double radius = 0, sense = -1;
@@ -174,6 +174,7 @@ class Klartext {
   Vec3 last_direction() const;
   void fix_last_end();
   void fix_end(std::size_t behind);
+  void moved_behind(std::size_t at, std::size_t count);
   void add_rotary(const BlockValues& b, std::size_t move);
   void turn_only(const BlockValues& b);
   void direction_target(const Vec3& direction, std::size_t move);
@@ -319,9 +320,22 @@ class Klartext {
   std::size_t cycle_moves_ = 0;
   int cycle_g_ = 0;
   std::vector<Vec3> pattern_;  ///< PATTERN DEF: places, programmed
+  /// Bit i: without kinematics, X, Y, Z still have the number that they had before the tilted plane changed.
+  std::uint8_t carried_over_ = 0;
+  /// The planes in which the program cuts, without kinematics: at most two of them are kept.
+  struct CutPlane {
+    std::optional<Eigen::Matrix3d> tilt{};
+    Transform base{};
+  };
+  std::vector<CutPlane> cut_planes_;
+  void note_cut_plane();
+  void place_stock();
+  std::vector<std::size_t> anchors_;  ///< behind moves on whose ends others rely, ascending
   std::optional<Vec3> blank_min_mm_;
 };
 
 Plane plane_of_axis(int axis);
+/// A point of the unit circle: at multiples of 90 degrees exactly.
+Vec2 direction_at_deg(double degrees);
 
 }  // namespace camber::nc::heidenhain

@@ -13,9 +13,7 @@ std::string ParameterName::text() const {
   return kind == 'Q' ? fmt::format("Q{}", number) : fmt::format("Q{}{}", kind, number);
 }
 
-std::map<int, double>& Parameters::values_of(char kind) {
-  return kind == 'L' ? local_.back() : kind == 'R' ? r_ : q_;
-}
+std::map<int, double>& Parameters::values_of(char kind) { return kind == 'L' ? local_.back() : kind == 'R' ? r_ : q_; }
 
 double Parameters::value(const ParameterName& name, std::size_t offset) {
   auto& values = values_of(name.kind);
@@ -82,8 +80,9 @@ double read_value(Cursor& at, Parameters& parameters) {
   else
     at.accept('+');
   if (const auto name = read_parameter(at)) return sign * parameters.value(*name, begin);
-  throw FormulaError(begin, "expression", fmt::format("{}: a number or a Q parameter was expected",
-                                                       at.more() ? at.word() : std::string("nothing follows")));
+  throw FormulaError(begin, "expression",
+                     fmt::format("{}: a number or a Q parameter was expected",
+                                 at.more() ? at.word() : std::string("nothing follows")));
 }
 
 namespace {
@@ -183,8 +182,9 @@ class Formula {
   double function(std::size_t begin) {
     const std::string name = at_.letters();
     if (name.empty())
-      throw FormulaError(begin, "expression", fmt::format("{} in a formula; a number, a parameter or a function was expected",
-                                                          at_.more() ? at_.word() : std::string("nothing")));
+      throw FormulaError(begin, "expression",
+                         fmt::format("{} in a formula; a number, a parameter or a function was expected",
+                                     at_.more() ? at_.word() : std::string("nothing")));
     at_.advance(name.size());
     if (name == "PI") return kPi;
     if (name == "TONUMB") return tonumb(begin);
@@ -214,10 +214,11 @@ class Formula {
     if (name == "INT") return std::trunc(x);
     if (name == "FRAC") return x - std::trunc(x);
     if (name == "SGN") return x > 0 ? 1 : x < 0 ? -1 : 0;
-    throw FormulaError(begin, "expression",
-                       fmt::format("{} is no function of a formula; SQ, SQRT, SIN, COS, TAN, ASIN, ACOS, ATAN, LN, LOG, "
-                                   "EXP, NEG, ABS, INT, FRAC or SGN was expected",
-                                   name));
+    throw FormulaError(
+        begin, "expression",
+        fmt::format("{} is no function of a formula; SQ, SQRT, SIN, COS, TAN, ASIN, ACOS, ATAN, LN, LOG, "
+                    "EXP, NEG, ABS, INT, FRAC or SGN was expected",
+                    name));
   }
 
   double signed_argument(std::size_t, const std::string&) { return signed_power(); }
@@ -233,7 +234,8 @@ class Formula {
 
   double tonumb(std::size_t begin) {
     at_.accept('(');
-    if (!at_.accept_prefix("SRC_")) throw FormulaError(begin, "expression", "TONUMB without SRC_; SRC_QS1 was expected");
+    if (!at_.accept_prefix("SRC_"))
+      throw FormulaError(begin, "expression", "TONUMB without SRC_; SRC_QS1 was expected");
     const auto name = read_parameter(at_);
     if (!name || name->kind != 'S') throw FormulaError(begin, "expression", "TONUMB without a QS parameter");
     at_.accept(')');

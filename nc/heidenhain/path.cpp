@@ -13,6 +13,12 @@ namespace {
 constexpr char kAxisLetters[] = "XYZ";
 constexpr double kFullTurn_rad = 2 * kPi;
 
+std::uint8_t given_axes(const BlockValues& b) {
+  return static_cast<std::uint8_t>((b.axis[0] ? 1 : 0) | (b.axis[1] ? 2 : 0) | (b.axis[2] ? 4 : 0));
+}
+
+}  // namespace
+
 /// A point at an angle: multiples of 90 degrees exactly.
 Vec2 direction_at_deg(double degrees) {
   const double turn = std::fmod(std::fmod(degrees, 360.0) + 360.0, 360.0);
@@ -22,12 +28,6 @@ Vec2 direction_at_deg(double degrees) {
   if (turn == 270) return {0, -1};
   return {std::cos(rad_from_deg(turn)), std::sin(rad_from_deg(turn))};
 }
-
-std::uint8_t given_axes(const BlockValues& b) {
-  return static_cast<std::uint8_t>((b.axis[0] ? 1 : 0) | (b.axis[1] ? 2 : 0) | (b.axis[2] ? 4 : 0));
-}
-
-}  // namespace
 
 Plane plane_of_axis(int axis) { return axis == 2 ? Plane::xy : axis == 1 ? Plane::zx : Plane::yz; }
 
@@ -133,7 +133,8 @@ Vec3 Klartext::end_in_moves(const Vec3& programmed_end, std::uint8_t given) cons
 
 /// PR and PA about the pole; what is not given stays.
 Vec3 Klartext::polar_target(const BlockValues& b) {
-  if (!pole_given_) throw FormulaError(statement_->begin, "pole", "a polar coordinate without a pole; CC was expected before");
+  if (!pole_given_)
+    throw FormulaError(statement_->begin, "pole", "a polar coordinate without a pole; CC was expected before");
   const PlaneAxes axes = axes_of(pole_plane_);
   Vec3 end = target(b);
   const Vec3 now = programmed();
@@ -210,6 +211,8 @@ Move& Klartext::add_move(MoveKind kind, const Vec3& end_mm) {
   move.feed_by_variable = feed_by_variable_;
   feed_given_ = false;
   move.reference = kind != MoveKind::dwell && std::ranges::any_of(place_, [](Place p) { return p != Place::known; });
+  move.reference |= kind == MoveKind::rapid && carried_over_ != 0;
+  if (kind == MoveKind::linear || kind == MoveKind::arc) note_cut_plane();
   if (leaving_ && kind != MoveKind::dwell) {
     move.start_mm += beside_mm_;
     move.editable = leaving_ = false;
@@ -234,6 +237,7 @@ void Klartext::settle(std::uint8_t given) {
   for (unsigned axis = 0; axis < 3; ++axis)
     if ((given & (1U << axis)) != 0) place_[axis] = Place::known;
   open_axes_ = static_cast<std::uint8_t>(open_axes_ & ~given);
+  carried_over_ = static_cast<std::uint8_t>(carried_over_ & ~given);
 }
 
 /// A cutting move needs a place to start from: axes that were never programmed are taken to stand at zero.
@@ -245,8 +249,9 @@ void Klartext::prepare_cutting(const char* what, std::uint8_t given) {
     if (placed) {
       if (place_[axis] == Place::never)
         warn(statement_->begin, "start-unknown",
-             fmt::format("{} to {} from a place that the program has not given; the move is ignored for material removal",
-                         what, letter),
+             fmt::format(
+                 "{} to {} from a place that the program has not given; the move is ignored for material removal", what,
+                 letter),
              "from nowhere");
     } else if (place_[axis] == Place::never) {
       warn(statement_->begin, "start-unknown",
@@ -254,7 +259,8 @@ void Klartext::prepare_cutting(const char* what, std::uint8_t given) {
       place_[axis] = Place::known;
     } else {
       warn(statement_->begin, "at-reference",
-           fmt::format("{} while {} is at a machine coordinate; the move is ignored for material removal", what, letter));
+           fmt::format("{} while {} is at a machine coordinate; the move is ignored for material removal", what,
+                       letter));
     }
   }
 }
@@ -355,10 +361,11 @@ void Klartext::add_rotary(const BlockValues& b, std::size_t move) {
   if (options_.rotary_axes.empty()) {
     const bool at_zero = std::ranges::all_of(b.rotary, [](const auto& v) { return !v || *v == 0; }) && b.to_plane == 0;
     if (!at_zero)
-      warn(statement_->begin, "rotary-axis",
-           "rotary axes turn here; without a machine file with [kinematics] X, Y and Z are read as they are programmed, "
-           "and the tool stays upright",
-           "rotary");
+      warn(
+          statement_->begin, "rotary-axis",
+          "rotary axes turn here; without a machine file with [kinematics] X, Y and Z are read as they are programmed, "
+          "and the tool stays upright",
+          "rotary");
     return;
   }
   if (b.to_plane != 0 && tilt_) return direction_target(tilt_->col(2), move);
@@ -413,10 +420,11 @@ void Klartext::turn_only(const BlockValues& b) {
 /// The rotary axes put the tool along a direction in the frame of the moves.
 void Klartext::direction_target(const Vec3& direction, std::size_t move) {
   if (options_.rotary_axes.empty()) {
-    warn(statement_->begin, "rotary-axis",
-         "the tool is tilted here; without a machine file with [kinematics] X, Y and Z are read as they are programmed, "
-         "and the tool stays upright",
-         "rotary");
+    warn(
+        statement_->begin, "rotary-axis",
+        "the tool is tilted here; without a machine file with [kinematics] X, Y and Z are read as they are programmed, "
+        "and the tool stays upright",
+        "rotary");
     return;
   }
   RotaryTarget target;
@@ -444,13 +452,12 @@ Vec3 Klartext::last_direction() const {
 /// What follows relies on where the last move ends.
 void Klartext::fix_last_end() { fix_end(out_.moves.size()); }
 
-/// Of the move before `behind`.
-void Klartext::fix_end(std::size_t behind) {
-  while (behind > 0 && out_.moves[behind - 1].kind == MoveKind::dwell) --behind;
-  if (behind == 0) return;
-  Move& move = out_.moves[behind - 1];
-  move.end_fixed |= move.editable;
-  move.editable = false;
+/// The same of the move before `behind`; which one that can be is known at the end (finish).
+void Klartext::fix_end(std::size_t behind) { anchors_.push_back(behind); }
+
+/// Moves were put before `at`.
+void Klartext::moved_behind(std::size_t at, std::size_t count) {
+  for (auto a = anchors_.rbegin(); a != anchors_.rend() && *a > at; ++a) *a += count;
 }
 
 /// `arc`: programmed.
@@ -486,10 +493,11 @@ bool Klartext::make_arc_of(ArcWords words, const BlockValues& b) {
   }
   std::string message = result.error;
   if (message.empty() && result.radius_difference_mm >= kArcRadiusWarningMm) {
-    message = fmt::format("the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end; a difference below "
-                          "{} mm was expected",
-                          result.start_radius_mm, result.end_radius_mm,
-                          result.radius_difference_mm < kArcRadiusErrorMm ? kArcRadiusWarningMm : kArcRadiusErrorMm);
+    message = fmt::format(
+        "the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end; a difference below "
+        "{} mm was expected",
+        result.start_radius_mm, result.end_radius_mm,
+        result.radius_difference_mm < kArcRadiusErrorMm ? kArcRadiusWarningMm : kArcRadiusErrorMm);
     if (result.radius_difference_mm < kArcRadiusErrorMm) {
       warn(statement_->begin, "arc-radius", message, "arc-radius");
       message.clear();
@@ -507,8 +515,7 @@ bool Klartext::make_arc_of(ArcWords words, const BlockValues& b) {
 }
 
 void Klartext::run_circle(const BlockValues& b) {
-  if (!pole_given_)
-    throw FormulaError(statement_->begin, "pole", "C without a circle centre; CC was expected before");
+  if (!pole_given_) throw FormulaError(statement_->begin, "pole", "C without a circle centre; CC was expected before");
   if (pole_from_here_) editable_ = false;
   ArcWords words;
   words.start_mm = programmed();
@@ -556,7 +563,8 @@ void Klartext::run_tangent_arc(const BlockValues& b, const Vec3& end) {
   fix_last_end();  // it gives the arc its direction
   if (std::abs(across) < 1e-9 * std::max(1.0, chord.norm())) {
     if (chord.dot(d) < 0 || chord.norm() == 0)
-      return error(statement_->begin, "arc", "CT ends behind its start on the line that it is tangent to; no arc leads there");
+      return error(statement_->begin, "arc",
+                   "CT ends behind its start on the line that it is tangent to; no arc leads there");
     return line_to(end, 7, b);
   }
   const double radius = chord.squaredNorm() / (2 * across);  // positive: the centre is on the left

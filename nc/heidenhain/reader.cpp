@@ -262,7 +262,8 @@ class Reader {
     else if (auto number = at.integer())
       name = fmt::format("{}", *number);
     else
-      return report_.error(s.begin, "label", "LBL without a number or a name in quotes; LBL 1 or LBL \"NAME\" was expected");
+      return report_.error(s.begin, "label",
+                           "LBL without a number or a name in quotes; LBL 1 or LBL \"NAME\" was expected");
     if (name == "0") return;
     const auto [found, is_new] = tree_.labels.emplace(name, static_cast<std::uint32_t>(tree_.statements.size()));
     if (!is_new)
@@ -334,8 +335,9 @@ class Reader {
     const bool first = program_.words.size() == first_word_;
     if ((kind_ == Kind::chamfer || kind_ == Kind::rounding) && begins_value(c) && first)
       return value_word(at, begin, 'R', 0);
-    report_.error(begin, "not-a-word",
-                  fmt::format("{} is no word of a Klartext block; coordinates, R0, F, DR or M were expected", at.word()));
+    report_.error(
+        begin, "not-a-word",
+        fmt::format("{} is no word of a Klartext block; coordinates, R0, F, DR or M were expected", at.word()));
     return false;
   }
 
@@ -410,7 +412,8 @@ class Reader {
   bool vector_word(Cursor& at, std::size_t begin, const char (&letters)[3]) {
     const char axis = at.behind(1);
     if (axis < 'X' || axis > 'Z') {
-      report_.error(begin, "not-a-word", fmt::format("{} is no component of a vector; X, Y or Z was expected", at.word()));
+      report_.error(begin, "not-a-word",
+                    fmt::format("{} is no component of a vector; X, Y or Z was expected", at.word()));
       return false;
     }
     return value_word(at, begin, letters[axis - 'X'], 2);
@@ -452,6 +455,12 @@ class Reader {
       while (i < at.end() && (text_[i] == ' ' || text_[i] == '\t')) ++i;
       if (i >= at.end() || !(is_digit(text_[i]) || upper(text_[i]) == 'Q' || text_[i] == '.'))
         return compensation(next == '+' ? 3 : 4);
+    }
+    if (is_letter(next) && next != 'Q') {
+      report_.error(
+          begin, "not-a-word",
+          fmt::format("{} is no word of a Klartext block; coordinates, R0, F, DR or M were expected", at.word()));
+      return false;
     }
     return value_word(at, begin, 'R', 1);
   }
@@ -556,7 +565,8 @@ Program read_text(SourceText source, Diagnostics& diagnostics) {
   auto tree = std::make_shared<Tree>();
   Reporter report(program.source, diagnostics);
   Reader(program, *tree, report).run();
-  const bool wordless = std::ranges::all_of(tree->statements, [](const Statement& s) { return s.kind == Kind::nothing; });
+  const bool wordless =
+      std::ranges::all_of(tree->statements, [](const Statement& s) { return s.kind == Kind::nothing; });
   program.tree = std::move(tree);
   report.finish();
   if (wordless) {

@@ -38,13 +38,17 @@ class KlartextRules : public TextRules {
     return out;
   }
 
-  bool incremental(const ModalState&, const Word* word) const override { return word && is_incremental(program_, *word); }
-
-  std::string new_word(std::uint32_t, char letter, const std::string& number) const override {
-    const std::string text = comma_ ? with_comma(number) : number;
-    const bool sign = letter != 'F' && plus_ && !text.empty() && text.front() != '-' && text.front() != '+';
-    return letter + std::string(sign ? "+" : "") + text;
+  bool incremental(const ModalState&, const Word* word) const override {
+    return word && is_incremental(program_, *word);
   }
+
+  void adapt(NumberStyle& style) const override {
+    style.plus = plus_;
+    style.comma = comma_;
+    if (!trailing_point_ && style.whole == WholeStyle::point) style.whole = WholeStyle::plain;
+  }
+
+  std::string new_word(std::uint32_t, char letter, const std::string& number) const override { return letter + number; }
 
   /// X Y Z behind their neighbours, F behind the coordinates, R and DR.
   Place place_of(std::uint32_t block, char letter) const override {
@@ -53,8 +57,8 @@ class KlartextRules : public TextRules {
     for (const Word& w : program_.words_of(block)) {
       if (letter == 'F') {
         const bool behind = is_axis(w.letter) || (w.letter >= 'A' && w.letter <= 'C') || w.letter == 'R' ||
-                            w.letter == letter::kCompensation || w.letter == letter::kSense || w.letter == letter::kPolarAngle ||
-                            w.letter == letter::kPolarRadius || is_vector(w.letter);
+                            w.letter == letter::kCompensation || w.letter == letter::kSense ||
+                            w.letter == letter::kPolarAngle || w.letter == letter::kPolarRadius || is_vector(w.letter);
         if (behind) before = &w;
         continue;
       }
@@ -106,9 +110,7 @@ class KlartextRules : public TextRules {
     return out;
   }
 
-  std::string comment(std::string_view text) const override {
-    return (numbers_ ? with_number("", 0) : std::string()) + "; " + std::string(text);
-  }
+  std::string comment(std::string_view text) const override { return "; " + std::string(text); }
 
   std::size_t header_block() const override {
     if (tree_.statements.empty()) return 0;
@@ -119,14 +121,15 @@ class KlartextRules : public TextRules {
   bool by_radius(std::uint32_t block) const override { return kind_of(block) == Kind::radius_arc; }
   bool absolute_centre(const ModalState&, std::uint32_t) const override { return true; }
 
-  void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm, int decimals) override {
+  void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm,
+               int decimals) override {
     if (wanted.by_radius) return writer.set('R', arc.r_mm / unit_mm, decimals);
     writer.put_before(centre_line(writer.block(), writer, wanted, arc, unit_mm, decimals));
     moved_ = centre_of_[writer.block()];
   }
 
-  std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted, const RoundedArc& arc,
-                          double unit_mm, int decimals, std::span<const Word> own) override {
+  std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
+                          const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) override {
     const std::uint32_t block = writer.block();
     std::vector<std::string> texts, feeds;
     for (const NewWord& w : words) {
@@ -189,6 +192,7 @@ class KlartextRules : public TextRules {
       const char first = text[w.offset + w.value_at];
       if (first != '-') ++(first == '+' ? plus : none);
       const std::string_view number = std::string_view(text).substr(w.offset, w.length);
+      trailing_point_ |= number.back() == '.' || number.back() == ',';
       comma += number.find(',') != std::string_view::npos;
       point += number.find('.') != std::string_view::npos;
       if (++seen > 20000) break;
@@ -220,19 +224,16 @@ class KlartextRules : public TextRules {
     }
   }
 
-  static std::string with_comma(std::string number) {
-    std::ranges::replace(number, '.', ',');
-    return number;
-  }
-
-  std::string centre_line(std::uint32_t block, const BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc,
-                          double unit_mm, int decimals) const {
+  std::string centre_line(std::uint32_t block, const BlockWriter& writer, const WantedArc& wanted,
+                          const RoundedArc& arc, double unit_mm, int decimals) const {
     const PlaneAxes axes = axes_of(wanted.plane);
-    std::array<std::pair<int, double>, 2> words{std::pair(axes.first, arc.first_mm), std::pair(axes.second, arc.second_mm)};
+    std::array<std::pair<int, double>, 2> words{std::pair(axes.first, arc.first_mm),
+                                                std::pair(axes.second, arc.second_mm)};
     std::ranges::sort(words);
     std::string out = "CC";
     for (const auto& [axis, value] : words)
-      out += " " + new_word(block, kAxes[static_cast<std::size_t>(axis)], format_number(value / unit_mm, decimals, writer.style()));
+      out += " " + new_word(block, kAxes[static_cast<std::size_t>(axis)],
+                            format_number(value / unit_mm, decimals, writer.style()));
     return out;
   }
 
@@ -262,10 +263,11 @@ class KlartextRules : public TextRules {
   }
 
   const Tree& tree_;
-  std::vector<std::uint32_t> statement_of_;          ///< by block; kNone: a line that continues another
-  std::map<std::uint32_t, std::uint32_t> centre_of_; ///< by block: the block of its CC
-  std::uint32_t moved_ = kNone;                      ///< a CC that the emitted text has replaced by another since
+  std::vector<std::uint32_t> statement_of_;           ///< by block; kNone: a line that continues another
+  std::map<std::uint32_t, std::uint32_t> centre_of_;  ///< by block: the block of its CC
+  std::uint32_t moved_ = kNone;                       ///< a CC that the emitted text has replaced by another since
   bool plus_ = true, comma_ = false, numbers_ = true;
+  bool trailing_point_ = false;  ///< X-7.
   std::string number_prefix_;
 };
 

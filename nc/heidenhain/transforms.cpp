@@ -50,8 +50,7 @@ Matrix linear_of(const Transform& t, int tool_axis) {
 Vec3 shift_of(const Transform& t, int tool_axis) {
   const Matrix linear = linear_of(t, tool_axis);
   Vec3 offset = Vec3::Zero();  // scales of single axes have a centre of their own
-  for (int axis = 0; axis < 3; ++axis)
-    offset[axis] = t.axis_scale_centre_mm[axis] * (1 / t.axis_scale[axis] - 1);
+  for (int axis = 0; axis < 3; ++axis) offset[axis] = t.axis_scale_centre_mm[axis] * (1 / t.axis_scale[axis] - 1);
   return t.shift_mm + linear * offset;
 }
 
@@ -104,16 +103,19 @@ void Klartext::shift_datum(Cursor at, std::size_t offset) {
       at.advance();
       const double value = known(read_value(at, parameters_), begin);
       if (value != 0)
-        error(begin, "not-supported", fmt::format("a datum shift of {} is not supported; X, Y and Z were expected", axis));
+        error(begin, "not-supported",
+              fmt::format("a datum shift of {} is not supported; X, Y and Z were expected", axis));
       continue;
     }
     if (axis < 'X' || axis > 'Z') {
-      if (at.letters().empty()) throw FormulaError(offset, "cycle", fmt::format("{} in CYCL DEF 7; X, Y and Z were expected", at.word()));
+      if (at.letters().empty())
+        throw FormulaError(offset, "cycle", fmt::format("{} in CYCL DEF 7; X, Y and Z were expected", at.word()));
       at.advance(at.letters().size());  // a word of comment
       continue;
     }
     at.advance();
-    if (!at.more()) throw FormulaError(begin, "no-number", fmt::format("{} has no number; a number was expected", axis));
+    if (!at.more())
+      throw FormulaError(begin, "no-number", fmt::format("{} has no number; a number was expected", axis));
     const double value = known(read_value(at, parameters_), begin) * unit_mm();
     double& shift = transform().shift_mm[axis - 'X'];
     shift = step ? shift + value : value;
@@ -126,7 +128,8 @@ void Klartext::set_mirror(Cursor at) {
   while (at.more()) {
     const char axis = at.peek();
     if (axis < 'X' || axis > 'Z')
-      throw FormulaError(at.offset(), "cycle", fmt::format("{} in a mirror image; X, Y and Z were expected", at.word()));
+      throw FormulaError(at.offset(), "cycle",
+                         fmt::format("{} in a mirror image; X, Y and Z were expected", at.word()));
     mirror[static_cast<std::size_t>(axis - 'X')] = true;
     at.advance();
   }
@@ -156,7 +159,8 @@ void Klartext::set_scale(Cursor at) {
       throw FormulaError(at.offset(), "cycle", fmt::format("{} in a scale; SCL was expected", at.word()));
     value = known(read_value(at, parameters_), begin);
   }
-  if (!(value > 0)) throw FormulaError(begin, "scaling", fmt::format("a scale of {}; greater than zero was expected", value));
+  if (!(value > 0))
+    throw FormulaError(begin, "scaling", fmt::format("a scale of {}; greater than zero was expected", value));
   transform().scale = value;
   update_frame();
 }
@@ -172,7 +176,8 @@ void Klartext::set_axis_scale(Cursor at) {
     if (centre) at.advance(2);
     const char axis = at.peek();
     if (axis < 'X' || axis > 'Z')
-      throw FormulaError(begin, "cycle", fmt::format("{} in CYCL DEF 26; X, Y, Z, CCX, CCY or CCZ was expected", at.word()));
+      throw FormulaError(begin, "cycle",
+                         fmt::format("{} in CYCL DEF 26; X, Y, Z, CCX, CCY or CCZ was expected", at.word()));
     at.advance();
     const double value = known(read_value(at, parameters_), begin);
     if (centre)
@@ -197,7 +202,8 @@ void Klartext::run_transform(const Statement& s) {
       return update_frame();
     }
     if (!at.accept("AXIS"))
-      throw FormulaError(s.begin, "not-supported", "TRANS DATUM from a table is not supported; TRANS DATUM AXIS was expected");
+      throw FormulaError(s.begin, "not-supported",
+                         "TRANS DATUM from a table is not supported; TRANS DATUM AXIS was expected");
     return shift_datum(at, s.begin);
   }
   if (what == "MIRROR") {
@@ -206,7 +212,8 @@ void Klartext::run_transform(const Statement& s) {
   }
   if (what == "ROTATION") return set_rotation(reset ? Cursor({}, 0, 0) : at);
   if (what == "SCALE") return set_scale(reset ? Cursor({}, 0, 0) : at);
-  error(s.begin, "not-a-word", fmt::format("TRANS {} is not known; DATUM, MIRROR, ROTATION or SCALE was expected", what));
+  error(s.begin, "not-a-word",
+        fmt::format("TRANS {} is not known; DATUM, MIRROR, ROTATION or SCALE was expected", what));
 }
 
 // --- tilted planes
@@ -237,15 +244,48 @@ void Klartext::set_working_plane(Cursor at, int part) {
     tilt(spatial(angles), false, statement_->begin);
 }
 
+/// Of a feed move.
+void Klartext::note_cut_plane() {
+  if (!options_.rotary_axes.empty() || cut_planes_.size() > 1) return;
+  const auto same = [](const Matrix& a, const Matrix& b) { return (a - b).cwiseAbs().maxCoeff() < 1e-9; };
+  if (!cut_planes_.empty() && cut_planes_.back().tilt.has_value() == tilt_.has_value() &&
+      (!tilt_ || same(*cut_planes_.back().tilt, *tilt_)))
+    return;
+  cut_planes_.push_back({tilt_, base_});
+  if (cut_planes_.size() == 2)
+    warn(statement_->begin, "tilted-plane",
+         "the program cuts in more than one plane from here on; without a machine file with [kinematics] they lie over "
+         "each other, and no simulation of material is right");
+}
+
+/// The blank in the coordinates of the plane in which the program cuts. Where that is more than one, or the blank
+/// stands askew in it, there is none.
+void Klartext::place_stock() {
+  if (!out_.stock || cut_planes_.empty() || (cut_planes_.size() == 1 && !cut_planes_.front().tilt)) return;
+  const CutPlane& plane = cut_planes_.front();
+  const bool square =
+      plane.tilt && (plane.tilt->cwiseAbs().array().round() - plane.tilt->cwiseAbs().array()).abs().maxCoeff() < 1e-9;
+  if (cut_planes_.size() > 1 || !square || out_.stock->cylinder) return out_.stock.reset();
+  const Matrix linear = linear_of(plane.base, tool_axis_);
+  const auto in_plane = [&](const Vec3& p) {
+    return Vec3(plane.tilt->transpose() * linear.inverse() * (p - shift_of(plane.base, tool_axis_)));
+  };
+  const Vec3 a = in_plane(out_.stock->min_mm), b = in_plane(out_.stock->max_mm);
+  out_.stock->min_mm = a.cwiseMin(b);
+  out_.stock->max_mm = a.cwiseMax(b);
+}
+
 void Klartext::tilt(const Matrix& rotation, bool turns, std::size_t offset) {
   end_compensation();
+  if (options_.rotary_axes.empty() && !(tilt_ && *tilt_ == rotation)) carried_over_ = 7;
   tilt_ = rotation;
   in_plane_ = {};
   update_frame();
   if (options_.rotary_axes.empty()) {
     if (!rotation.isIdentity(1e-12))
       warn(offset, "tilted-plane",
-           "a tilted plane is read as it is programmed, with the side of the part up that it machines: where it lies takes "
+           "a tilted plane is read as it is programmed, with the side of the part up that it machines: where it lies "
+           "takes "
            "a machine file with [kinematics]",
            "tilted");
     state_.work_frame = WorkFrame::machine;
@@ -268,7 +308,10 @@ void Klartext::tilt(const Matrix& rotation, bool turns, std::size_t offset) {
 }
 
 void Klartext::reset_tilt(bool turns) {
-  if (tilt_) end_compensation();
+  if (tilt_) {
+    end_compensation();
+    if (options_.rotary_axes.empty() && !tilt_->isIdentity(1e-12)) carried_over_ = 7;
+  }
   tilt_.reset();
   in_plane_ = {};
   update_frame();
@@ -300,8 +343,8 @@ void Klartext::run_plane(const Statement& s) {
     std::string word = at.letters();
     if (word.empty()) throw FormulaError(begin, "plane", fmt::format("{} in PLANE is not understood", at.word()));
     if (word == "STAY" || word == "ABST" || word == "DIST" || word == "COORD" || word == "TABLE" || word == "ROT" ||
-        word == "SYM" || word == "SEQ" || word == "FMAX" || word == "FAUTO" || word == "MB" || word == "MAX" || word == "F" ||
-        word == "M") {
+        word == "SYM" || word == "SEQ" || word == "FMAX" || word == "FAUTO" || word == "MB" || word == "MAX" ||
+        word == "F" || word == "M") {
       at.advance(word.size());
       if (word == "SEQ" || word == "SYM") at.advance();
       if ((word == "ROT" && form == "PROJECTED") && begins_number(at)) {
@@ -347,7 +390,8 @@ void Klartext::run_plane(const Statement& s) {
   if (form == "VECTOR") {
     Vec3 base = vector("BX", "BY", "BZ"), normal = vector("NX", "NY", "NZ");
     if (normal.norm() < 1e-6 || base.norm() < 1e-6)
-      throw FormulaError(s.begin, "plane", "PLANE VECTOR with a vector of no length; BX BY BZ and NX NY NZ were expected");
+      throw FormulaError(s.begin, "plane",
+                         "PLANE VECTOR with a vector of no length; BX BY BZ and NX NY NZ were expected");
     normal.normalize();
     base -= base.dot(normal) * normal;
     if (base.norm() < 1e-6)
@@ -365,7 +409,8 @@ void Klartext::run_plane(const Statement& s) {
     (void)p1;
     const Vec3 x = b - a, normal = x.cross(c - a);
     if (normal.norm() < 1e-9)
-      throw FormulaError(s.begin, "plane", "the points of PLANE POINTS lie on a line; three points of a plane were expected");
+      throw FormulaError(s.begin, "plane",
+                         "the points of PLANE POINTS lie on a line; three points of a plane were expected");
     Matrix m;
     m.col(0) = x.normalized();
     m.col(2) = normal.normalized();
@@ -385,13 +430,15 @@ void Klartext::run_plane(const Statement& s) {
     return tilt(turned, turns, s.begin);
   }
   error(s.begin, "plane",
-        fmt::format("PLANE {} is not known; SPATIAL, PROJECTED, EULER, VECTOR, POINTS, RELATIV, AXIAL or RESET was expected",
-                    form));
+        fmt::format(
+            "PLANE {} is not known; SPATIAL, PROJECTED, EULER, VECTOR, POINTS, RELATIV, AXIAL or RESET was expected",
+            form));
 }
 
 bool Klartext::begins_number(Cursor& at) {
   const char c = at.peek();
-  return is_digit(c) || c == '+' || c == '-' || c == '.' || (c == 'Q' && (is_digit(at.behind(1)) || at.behind(1) == 'L'));
+  return is_digit(c) || c == '+' || c == '-' || c == '.' ||
+         (c == 'Q' && (is_digit(at.behind(1)) || at.behind(1) == 'L'));
 }
 
 // --- tool-centre-point control

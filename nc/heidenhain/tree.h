@@ -1,5 +1,6 @@
 #pragma once
-// What a Klartext program is made of: statements, one for each block of the control (a line and those that continue it).
+// What a Klartext program is made of: statements, one for each block of the control (a line and those that continue
+// it).
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -15,20 +16,20 @@ enum class Kind : std::uint8_t {
   nothing,  ///< comments, structure lines, empty lines
   begin_program,
   end_program,
-  line,              ///< L, and a coordinate alone
-  normal_line,       ///< LN
-  polar_line,        ///< LP
-  circle,            ///< C
-  radius_arc,        ///< CR
-  tangent_arc,       ///< CT
-  polar_circle,      ///< CP
-  polar_tangent_arc, ///< CTP
-  centre,            ///< CC
-  rounding,          ///< RND
-  chamfer,           ///< CHF
-  approach,          ///< APPR
-  departure,         ///< DEP
-  functions,         ///< M functions, F, S alone
+  line,               ///< L, and a coordinate alone
+  normal_line,        ///< LN
+  polar_line,         ///< LP
+  circle,             ///< C
+  radius_arc,         ///< CR
+  tangent_arc,        ///< CT
+  polar_circle,       ///< CP
+  polar_tangent_arc,  ///< CTP
+  centre,             ///< CC
+  rounding,           ///< RND
+  chamfer,            ///< CHF
+  approach,           ///< APPR
+  departure,          ///< DEP
+  functions,          ///< M functions, F, S alone
   tool_call,
   tool_def,
   blank_form,
@@ -54,30 +55,30 @@ constexpr bool has_words(Kind kind) { return kind >= Kind::line && kind <= Kind:
 
 /// Letters of Program::words that are no address of the text.
 namespace letter {
-inline constexpr char kCompensation = 'r';  ///< R0 RL RR R+ R-: value 0, 1, 2, 3, 4
-inline constexpr char kSense = 'd';         ///< DR+ DR-: 1, -1
-inline constexpr char kRapid = 'm';         ///< FMAX
-inline constexpr char kAutoFeed = 'a';      ///< FAUTO
-inline constexpr char kFeedPerTurn = 'u';   ///< FU
-inline constexpr char kFeedPerTooth = 'z';  ///< FZ
-inline constexpr char kPolarRadius = 'p';   ///< PR
-inline constexpr char kPolarAngle = 'g';    ///< PA
-inline constexpr char kLength = 'l';        ///< LEN
-inline constexpr char kArcAngle = 'c';      ///< CCA
-inline constexpr char kArgument = 'f';      ///< of the M function before it: F of M128, MB of M140, LA of M120
+inline constexpr char kCompensation = 'r';           ///< R0 RL RR R+ R-: value 0, 1, 2, 3, 4
+inline constexpr char kSense = 'd';                  ///< DR+ DR-: 1, -1
+inline constexpr char kRapid = 'm';                  ///< FMAX
+inline constexpr char kAutoFeed = 'a';               ///< FAUTO
+inline constexpr char kFeedPerTurn = 'u';            ///< FU
+inline constexpr char kFeedPerTooth = 'z';           ///< FZ
+inline constexpr char kPolarRadius = 'p';            ///< PR
+inline constexpr char kPolarAngle = 'g';             ///< PA
+inline constexpr char kLength = 'l';                 ///< LEN
+inline constexpr char kArcAngle = 'c';               ///< CCA
+inline constexpr char kArgument = 'f';               ///< of the M function before it: F of M128, MB of M140, LA of M120
 inline constexpr char kNormal[3] = {'n', 'o', 'q'};  ///< NX NY NZ
 inline constexpr char kTool[3] = {'t', 'v', 'w'};    ///< TX TY TZ
 }  // namespace letter
 
 struct Statement {
   Kind kind = Kind::nothing;
-  std::uint8_t skip = 0;      ///< begins with /
-  bool numbered = false;      ///< has a block number
-  std::uint32_t block = 0;    ///< its first line, an index into Program::blocks
+  std::uint8_t skip = 0;    ///< begins with /
+  bool numbered = false;    ///< has a block number
+  std::uint32_t block = 0;  ///< its first line, an index into Program::blocks
   std::uint32_t lines = 1;
-  std::uint32_t begin = 0;    ///< offset behind the number
-  std::uint32_t at = 0;       ///< behind the keyword
-  std::uint32_t end = 0;      ///< of the last line
+  std::uint32_t begin = 0;  ///< offset behind the number
+  std::uint32_t at = 0;     ///< behind the keyword
+  std::uint32_t end = 0;    ///< of the last line
   std::uint32_t first_word = 0, word_count = 0;
 };
 

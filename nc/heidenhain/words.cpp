@@ -24,8 +24,8 @@ BlockValues Klartext::read_values(const Statement& s) {
     const auto number = [&] { return by_parameter ? known(value_of(word), word.offset) : word.value; };
     const auto place = [&](std::optional<double>& out, std::size_t) {
       if (out)
-        error(word.offset, "repeated-word",
-              fmt::format("{} stands twice in the block; once was expected", word.letter), "repeated");
+        error(word.offset, "repeated-word", fmt::format("{} stands twice in the block; once was expected", word.letter),
+              "repeated");
       out = number();
       b.by_parameter |= by_parameter;
     };
@@ -120,7 +120,8 @@ BlockValues Klartext::read_values(const Statement& s) {
         if (s.kind == Kind::functions) {
           set_spindle_speed(number(), word.offset);
         } else {
-          warn(word.offset, "no-effect", "S in a path block is read without effect; the speed is set by TOOL CALL", "S");
+          warn(word.offset, "no-effect", "S in a path block is read without effect; the speed is set by TOOL CALL",
+               "S");
         }
         break;
       default:
@@ -139,7 +140,8 @@ BlockValues Klartext::read_values(const Statement& s) {
 void Klartext::set_feed(const BlockValues& b) {
   if (b.feed) {
     if (*b.feed < 0) {
-      error(statement_->begin, "feed-negative", fmt::format("F{} is negative; a feed greater than zero was expected", *b.feed));
+      error(statement_->begin, "feed-negative",
+            fmt::format("F{} is negative; a feed greater than zero was expected", *b.feed));
       return;
     }
     feed_ = state_.feed_mode == FeedMode::per_revolution ? *b.feed * unit_mm()
@@ -147,14 +149,14 @@ void Klartext::set_feed(const BlockValues& b) {
     feed_given_ = true;
     feed_by_variable_ = b.feed_by_variable;
   } else if (b.auto_feed) {
-    if (!tool_feed_) error(statement_->begin, "feed-missing", "FAUTO without a feed in TOOL CALL; F was expected there");
+    if (!tool_feed_)
+      error(statement_->begin, "feed-missing", "FAUTO without a feed in TOOL CALL; F was expected there");
     feed_ = tool_feed_;
     feed_given_ = true;
     feed_by_variable_ = true;
   } else if (b.feed_per_turn) {
     const double rpm = state_.spindle_speed_rpm;
-    if (rpm <= 0)
-      error(statement_->begin, "feed-per-turn", "FU without a spindle speed; S was expected before");
+    if (rpm <= 0) error(statement_->begin, "feed-per-turn", "FU without a spindle speed; S was expected before");
     feed_ = *b.feed_per_turn * unit_mm() * rpm / 60;
     feed_given_ = feed_by_variable_ = true;
   } else if (b.feed_per_tooth) {
@@ -175,8 +177,8 @@ double Klartext::cutting_feed(const std::string& what) {
   }
   if (state_.feed_mode != FeedMode::per_revolution) return *feed_;
   if (state_.spindle_speed_rpm > 0) return *feed_ * state_.spindle_speed_rpm / 60;
-  error(statement_->begin, "feed-per-turn", "a feed per revolution (M136) without a spindle speed; S was expected before",
-        "feed-per-turn");
+  error(statement_->begin, "feed-per-turn",
+        "a feed per revolution (M136) without a spindle speed; S was expected before", "feed-per-turn");
   return 0;
 }
 
@@ -346,7 +348,8 @@ void Klartext::call_tool(const Statement& s) {
       number = static_cast<int>(std::lround(known(parameters_.value(*parameter, begin), begin)));
   } else if (is_digit(at.peek())) {
     const double value = at.number().value_or(0);
-    if (value > 32767) throw FormulaError(begin, "tool", fmt::format("TOOL CALL {}; a number up to 32767 was expected", value));
+    if (value > 32767)
+      throw FormulaError(begin, "tool", fmt::format("TOOL CALL {}; a number up to 32767 was expected", value));
     number = static_cast<int>(value);  // 5.1 is tool 5 with its second length
     tool_numbers_.reserve(*number);
   }

@@ -153,5 +153,17 @@ TEST(StockComments, GiveASizeAndWhereTheZeroIs) {
   EXPECT_FALSE(stock_in_comments(SourceText("p.nc", "(STOCK TO LEAVE 0.5)\n(MATERIAL ALUMINIUM)\n(T1 D=6.)\n"), false));
 }
 
+TEST(ToolComments, OfKlartextPrograms) {
+  const std::string cut = "\n3 L X+0 Y+0 Z+0 FMAX\n4 L X+9 F100\n";
+  const auto expect = [&](const std::string& lines, int number, std::optional<ToolType> type, double diameter_mm) {
+    expect_tool({(lines + cut).c_str(), false, number, type, diameter_mm});
+  };
+  expect("1 ; T9938026 | FRA-SP0140 / DM=2 CR=1 TL=145\n2 TOOL CALL \"GB02\" Z S17950", 1, ToolType::ball, 2);
+  expect("1 * - TOOL: T77 | FRA / DM=5.7 CR=0 TL=85\n2 TOOL CALL 12 Z S900", 12, ToolType::flat, 5.7);
+  expect("1 ;(D=6.00 R=0.50 F=15.00 L=35.00)\nTOOL CALL  5 Z S4500", 5, ToolType::bull, 6);
+  expect("1 ;  #11 D=12 - ZMIN=-22.5 - flat end mill\n2 TOOL CALL 11 Z S5000", 11, ToolType::flat, 12);
+  expect("(     T01 TC1: KL+087.000 KR020.000 NZ06\nBEGIN PGM 1 MM\nN3 TOOL CALL 1 Z S1800", 1, std::nullopt, 40);
+}
+
 }  // namespace
 }  // namespace camber::machine

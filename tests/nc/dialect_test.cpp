@@ -73,7 +73,7 @@ TEST(Dialects, LimitNestedCalls) {
 
 TEST(Dialects, AreRecognisedByTheirOwnConstructs) {
   const auto shown = [](const std::string& text) { return dialect_shown_by(read_text(text).program); };
-  for (const Dialect& dialect : iso_dialects()) {
+  for (const Dialect& dialect : dialects()) {
     SCOPED_TRACE(dialect.name);
     EXPECT_EQ(shown("o1 if [1]\no1 endif\n") == &dialect, dialect.shown_by_o_words);
     EXPECT_EQ(shown("#<a>=1\n") == &dialect, dialect.shown_by_o_words);

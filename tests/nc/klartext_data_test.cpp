@@ -49,7 +49,8 @@ Counted count(const Read& r) {
       continue;
     }
     if (rules->goes_to_machine_place(move.block)) {
-      for (int a = 0; a < 3; ++a) known[static_cast<std::size_t>(a)] = known[static_cast<std::size_t>(a)] && move.start_mm[a] == move.end_mm[a];
+      for (int a = 0; a < 3; ++a)
+        known[static_cast<std::size_t>(a)] = known[static_cast<std::size_t>(a)] && move.start_mm[a] == move.end_mm[a];
       continue;
     }
     const Vec3 end = frame.to_program(move.end_mm) / unit;
@@ -205,7 +206,8 @@ std::vector<Flat> flat(const Interpretation& p) {
 }
 
 TEST(KlartextData, OnePartInTwoLanguages) {
-  const Read iso = read_file(tests::data_path("lang/same/iso.nc")), klartext = read_file(tests::data_path("lang/same/klartext.h"));
+  const Read iso = read_file(tests::data_path("lang/same/iso.nc")),
+             klartext = read_file(tests::data_path("lang/same/klartext.h"));
   EXPECT_FALSE(klartext.diagnostics.has_errors()) << klartext.messages.front();
   const auto a = flat(iso.moves), b = flat(klartext.moves);
   ASSERT_EQ(a.size(), b.size());

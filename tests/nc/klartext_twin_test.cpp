@@ -41,7 +41,11 @@ class Twins {
 
   int pick(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
   static std::string mm(int um, bool sign) {
-    std::string out = fmt::format("{}{}.{:03}", um < 0 ? "-" : sign ? "+" : "", std::abs(um) / 1000, std::abs(um) % 1000);
+    std::string out = fmt::format("{}{}.{:03}",
+                                  um < 0 ? "-"
+                                  : sign ? "+"
+                                         : "",
+                                  std::abs(um) / 1000, std::abs(um) % 1000);
     return out;
   }
   void line(const std::string& text) { klartext_ += (numbered_ ? fmt::format("{} ", number_++) : "") + text + "\n"; }
@@ -131,7 +135,8 @@ class Twins {
     }
     iso += fmt::format(" {}{} {}{}", "IJK"[first], mm(i, false), "IJK"[second], mm(j, false));
     const auto [a, b] = std::minmax(first, second);
-    line(fmt::format("CC {}{} {}{}", "XYZ"[a], mm(a == first ? cx : cy, true), "XYZ"[b], mm(b == first ? cx : cy, true)));
+    line(fmt::format("CC {}{} {}{}", "XYZ"[a], mm(a == first ? cx : cy, true), "XYZ"[b],
+                     mm(b == first ? cx : cy, true)));
     place_ = end;
     both(iso + feed(), klartext + (ccw ? " DR+" : " DR-") + feed());
     iso_ += "G17\n";
@@ -147,9 +152,11 @@ class Twins {
     const bool ccw = pick(0, 1) == 1, large = pick(0, 3) == 0;
     place_[0] += dx;
     place_[1] += dy;
-    both(fmt::format("{} X{} Y{} R{}", ccw ? "G3" : "G2", mm(place_[0], false), mm(place_[1], false), mm(large ? -r : r, false)) +
+    both(fmt::format("{} X{} Y{} R{}", ccw ? "G3" : "G2", mm(place_[0], false), mm(place_[1], false),
+                     mm(large ? -r : r, false)) +
              feed(),
-         fmt::format("CR X{} Y{} R{} DR{}", mm(place_[0], true), mm(place_[1], true), mm(large ? -r : r, true), ccw ? "+" : "-") +
+         fmt::format("CR X{} Y{} R{} DR{}", mm(place_[0], true), mm(place_[1], true), mm(large ? -r : r, true),
+                     ccw ? "+" : "-") +
              feed());
   }
 
@@ -189,7 +196,8 @@ class Twins {
     const int number = ++subs_, times = pick(1, 3);
     const int dx = pick(-5000, 5000), dy = pick(-5000, 5000);
     iso_subs_ += fmt::format("O{}\nG91 G1 X{}\nY{}\nG90 M99\n", 100 + number, mm(dx, false), mm(dy, false));
-    klartext_subs_.insert(klartext_subs_.end(), {fmt::format("LBL {}", number), "L IX" + mm(dx, true), "L IY" + mm(dy, true), "LBL 0"});
+    klartext_subs_.insert(klartext_subs_.end(),
+                          {fmt::format("LBL {}", number), "L IX" + mm(dx, true), "L IY" + mm(dy, true), "LBL 0"});
     iso_ += fmt::format("M98 P{} L{}\n", 100 + number, times);
     for (int i = 0; i < times; ++i) line(fmt::format("CALL LBL {}", number));
     place_[0] += times * dx;
@@ -203,9 +211,14 @@ class Twins {
     both(fmt::format("G0 Z{}", mm(place_[2], false)), fmt::format("L Z{} FMAX", mm(place_[2], true)));
     const int second = pick(0, 1) == 0 ? clearance : clearance + 2000;
     line("CYCL DEF 200 DRILLING ~");
-    for (const auto& [q, v] : {std::pair(200, mm(clearance, true)), {201, mm(depth, true)}, {206, fmt::format("+{}", feed)},
-                               {202, mm(-depth, true)}, {210, std::string("+0")}, {203, mm(top, true)},
-                               {204, mm(second, true)}, {211, std::string("+0")}})
+    for (const auto& [q, v] : {std::pair(200, mm(clearance, true)),
+                               {201, mm(depth, true)},
+                               {206, fmt::format("+{}", feed)},
+                               {202, mm(-depth, true)},
+                               {210, std::string("+0")},
+                               {203, mm(top, true)},
+                               {204, mm(second, true)},
+                               {211, std::string("+0")}})
       klartext_ += fmt::format("   Q{}={} ;TEXT{}\n", q, v, q == 211 ? "" : " ~");
     for (int i = 0; i < count; ++i) {
       place_[0] = pick(-40000, 40000);
@@ -315,7 +328,8 @@ class Twins {
 std::vector<const Move*> moves_that_go(const Interpretation& p) {
   std::vector<const Move*> out;
   for (const Move& m : p.moves)
-    if (m.kind == MoveKind::arc || m.kind == MoveKind::dwell || (m.start_mm - m.end_mm).norm() > 1e-9) out.push_back(&m);
+    if (m.kind == MoveKind::arc || m.kind == MoveKind::dwell || (m.start_mm - m.end_mm).norm() > 1e-9)
+      out.push_back(&m);
   return out;
 }
 
@@ -376,7 +390,8 @@ std::vector<MoveEdit> edits_of(const Read& r, std::mt19937& random) {
       const Vec3& n = r.moves.arcs[move.arc].normal;
       edit.end_mm = *edit.end_mm - n * n.dot(*edit.end_mm - move.end_mm);
     } else if (random() % 3 == 0) {
-      edit.via = {{.point_mm = 0.5 * (move.start_mm + *edit.end_mm) + Vec3(shift(random), shift(random), shift(random))}};
+      edit.via = {
+          {.point_mm = 0.5 * (move.start_mm + *edit.end_mm) + Vec3(shift(random), shift(random), shift(random))}};
     }
     if (random() % 3 == 0 && !move.feed_by_variable) edit.feed_mm_per_s = move.feed_mm_per_s * 0.75;
     out.push_back(edit);
@@ -406,7 +421,8 @@ TEST(KlartextTwins, AreEditedAsAsked) {
     for (; m < old_moves.size(); ++m) {
       const Move& old_move = old_moves[m];
       const MoveEdit* edit = e < wanted.size() && wanted[e].move == m ? &wanted[e++] : nullptr;
-      const bool made = edit && std::ranges::none_of(emission.not_made, [&](const EditNotMade& g) { return g.move == m; });
+      const bool made =
+          edit && std::ranges::none_of(emission.not_made, [&](const EditNotMade& g) { return g.move == m; });
       const std::size_t pieces = made ? 1 + edit->via.size() : 1;
       // A piece that rounds to nothing is left out; a step of a cycle that goes nowhere too.
       for (std::size_t i = 0; i < pieces && n < new_moves.size(); ++i, ++n) {
