@@ -161,8 +161,8 @@ std::optional<Mention> kiri_moto(const std::string& comment) {
   return out;
 }
 
-/// "DM=6 CR=3 TL=85" of hyperMILL, "D=6.00 R=0.00 F=15.00 L=35.00" of NX: diameter, corner radius, and in NX's the length
-/// of the flutes. The number in front of hyperMILL's is that of its library.
+/// "DM=6 CR=3 TL=85" of hyperMILL, "D=6.00 R=0.00 F=15.00 L=35.00" of NX: diameter, corner radius, and in NX's the
+/// length of the flutes. The number in front of hyperMILL's is that of its library.
 std::optional<Mention> diameter_and_corner(const std::string& comment, bool inch) {
   static const std::regex kHyperMill(R"(\bDM=([\d.]+)\s+CR=([\d.]+))"),
       kNx(R"(^\(?D=([\d.]+)\s+R=([\d.]+)(?:\s+F=([\d.]+))?)");
@@ -202,8 +202,8 @@ std::optional<Mention> length_and_radius(const std::string& comment, bool inch) 
   return out;
 }
 
-/// Comments that begin with a tool's number, or name it: "T3 D=6.", "#11 D=12 - FORM MILL", "1 = End Mill {6 mm}", "TOOL - 7 DIA. - .5",
-/// "Tool #6 ...", "No. 1: 3 mm".
+/// Comments that begin with a tool's number, or name it: "T3 D=6.", "#11 D=12 - FORM MILL", "1 = End Mill {6 mm}",
+/// "TOOL - 7 DIA. - .5", "Tool #6 ...", "No. 1: 3 mm".
 std::optional<Mention> numbered(const std::string& comment, bool inch) {
   static const std::regex kT(R"(^\s*(?:T\s*|#(?=\d+\s+D=))0*(\d{1,6})(?![\d.])\s*[:=]?(.*)$)", std::regex::icase),
       kList(R"(^\s*(\d{1,3})\s*=\s*(?=[A-Za-z.\d])(.+)$)"),
@@ -330,7 +330,8 @@ class Changes {
     std::map<std::size_t, std::string> names;
     for (std::size_t line = 1; line <= program_.line_count(); ++line) {
       const std::string_view text = program_.line(line);
-      if (text.find_first_of("Cc") == std::string_view::npos || text.find_first_of("Tt") == std::string_view::npos) continue;
+      if (text.find_first_of("Cc") == std::string_view::npos || text.find_first_of("Tt") == std::string_view::npos)
+        continue;
       const std::string code = code_of_line(program_, line);
       std::smatch m;
       if (!std::regex_search(code, m, kCall)) continue;

@@ -142,7 +142,7 @@ CornerCutResult cut_corner(Interpretation& program, const CornerCut& corner) {
   const auto too_long = [&](const Cut& c, const Side& side, const char* which) {
     if (c.length <= side.length + kTooShortMm) return std::string();
     return fmt::format("{} takes {:.4f} mm off the {} move, which is {:.4f} mm long; a longer move was expected",
-                     corner.text, c.length, which, side.length);
+                       corner.text, c.length, which, side.length);
   };
   for (const std::string& error : {too_long(cut->before, side_a, "first"), too_long(cut->behind, side_b, "second")})
     if (!error.empty()) return fail(error);

@@ -12,15 +12,15 @@ namespace camber::nc {
 struct CornerCut {
   std::size_t before = 0, after = 0;  ///< in Interpretation::moves: those that meet there, lines or arcs in the plane
   Plane plane = Plane::xy;
-  std::string plane_name = "G17";     ///< for messages
+  std::string plane_name = "G17";  ///< for messages
   bool chamfer = false;
-  double size_mm = 0;                 ///< radius; of a chamfer the distance from the corner
-  std::string text;                   ///< the words that ask for it, for messages
+  double size_mm = 0;  ///< radius; of a chamfer the distance from the corner
+  std::string text;    ///< the words that ask for it, for messages
 };
 
 struct CornerCutResult {
-  std::string error;             ///< not empty: nothing was changed
-  std::optional<Move> between;   ///< goes before move `after`; none: the moves run on into each other
+  std::string error;            ///< not empty: nothing was changed
+  std::optional<Move> between;  ///< goes before move `after`; none: the moves run on into each other
 };
 
 /// Cuts both moves short, in the coordinates of their frame, and makes the line or the arc between them, which the

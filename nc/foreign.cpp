@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 37> kSiemensWords = {
     "SOFT",   "BRISK", "CR",     "TURN",    "CIP",    "CFTCP",  "DIAMOF", "DIAMON",  "REPEATB",  "WORKPIECE",
     "EXTERN", "PROC",  "STOPRE", "ORIWKS",  "OFFN",   "WCS",    "GROUP"};
 constexpr std::array<std::string_view, 12> kHeidenhainWords = {"BEGIN", "PGM", "TOOL", "CYCL", "BLK", "FMAX",
-                                                          "LBL",   "CC",  "RND",  "CHF",  "FN",  "FUNCTION"};
+                                                               "LBL",   "CC",  "RND",  "CHF",  "FN",  "FUNCTION"};
 constexpr std::array<std::string_view, 13> kOWord = {"SUB",    "CALL",      "ENDSUB", "ENDWHILE", "ELSEIF",
                                                      "RETURN", "REPEAT",    "BREAK",  "CONTINUE", "OCALL",
                                                      "OSUB",   "ENDREPEAT", "OIF"};

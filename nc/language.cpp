@@ -110,11 +110,12 @@ void require_iso(const Program& program, std::string_view command) {
 
 void require_iso(const Dialect& dialect, const std::string& machine_file, std::string_view command) {
   if (dialect.language == LanguageId::iso) return;
-  fail_on_file(machine_file,
-               fmt::format("{} writes ISO G code, and the control of the machine reads {}; a control that reads ISO was "
-                           "expected",
-                           command, language_of(dialect.language).title),
-               "not-supported");
+  fail_on_file(
+      machine_file,
+      fmt::format("{} writes ISO G code, and the control of the machine reads {}; a control that reads ISO was "
+                  "expected",
+                  command, language_of(dialect.language).title),
+      "not-supported");
 }
 
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options) {

@@ -219,7 +219,11 @@ bool Sequencer::run_flow(const Statement& s) {
     case FlowKind::declaration:
       for (const Declared& d : s.declared) evaluator_.declare(d);
       return true;
-    case FlowKind::procedure:
+    case FlowKind::procedure:  // a call begins behind it
+      if (s.declared.empty()) return true;
+      report_.error(s.declared.front().offset, "subprogram",
+                    "the parameters of this subprogram are given by its call; the program that calls it was expected");
+      running_ = false;
       return true;
     default:
       return false;

@@ -246,6 +246,9 @@ TEST(Siemens, WrongProgramsGetAMessageAtTheLine) {
   const auto said = [](const std::string& text) { return read_siemens(text).messages; };
   EXPECT_EQ(said("G0 X0 Y0 Z0\nTRAOOF\n"), (Messages{"p.mpf:2:1: error: no subprogram TRAOOF: neither %_N_TRAOOF_SPF "
                                                      "in this file nor TRAOOF.SPF beside it [subprogram]"}));
+  EXPECT_EQ(said("PROC CONE(REAL LIFT, REAL STEP)\nONCE:\nG1 X=LIFT F100\nGOTOB ONCE\n"),
+            (Messages{"p.mpf:1:16: error: the parameters of this subprogram are given by its call; the program that "
+                      "calls it was expected [subprogram]"}));
   EXPECT_EQ(said("println(\"END\")\n"), (Messages{"p.mpf:1:1: error: no subprogram PRINTLN: neither %_N_PRINTLN_SPF in "
                                                   "this file nor PRINTLN.SPF beside it [subprogram]"}));
   EXPECT_EQ(said("G0 X10 Y0 Z0\nG3 X-10 Y0 I10 J0 F100\n"),

@@ -48,9 +48,7 @@ constexpr double kPeak = 0.03, kMean = 0.01;
 
 TEST(StaticCut, AnUpMillingToolOnASpringGrowsIntoItsCutAsDrawn) { expect_the_drawn_cut(soft(true), kPeak, kMean); }
 
-TEST(StaticCut, ADownMillingToolOnASpringGrowsIntoItsCutAsDrawn) {
-  expect_the_drawn_cut(soft(false), kPeak, kMean);
-}
+TEST(StaticCut, ADownMillingToolOnASpringGrowsIntoItsCutAsDrawn) { expect_the_drawn_cut(soft(false), kPeak, kMean); }
 
 TEST(StaticCut, ARepeatedToothPassingTakesWhatARigidToolTakes) {
   // What one tooth leaves by yielding the next one takes.
