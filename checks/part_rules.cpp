@@ -22,13 +22,13 @@ std::string shift_text(const Vec3& s) {
 
 constexpr double kOut_mm = 0.1;  // of the stock, that a part may be
 
-/// "+X by 1.00 mm": where a part that would fit into the stock stands out of its sides or its bottom. A stock that is
-/// smaller than the part is a region of it.
+/// "+X by 1.00 mm": where a part that would fit into the stock stands out of its sides. A stock that is smaller than
+/// the part is a region of it.
 std::string sides_out(const machine::Box& part, const machine::Box& stock) {
   std::string out;
-  for (int a = 0; a < 3; ++a) {
+  for (int a = 0; a < 2; ++a) {
     if (part.max_mm[a] - part.min_mm[a] > stock.max_mm[a] - stock.min_mm[a] + kOut_mm) continue;
-    const double below = stock.min_mm[a] - part.min_mm[a], above = a < 2 ? part.max_mm[a] - stock.max_mm[a] : 0;
+    const double below = stock.min_mm[a] - part.min_mm[a], above = part.max_mm[a] - stock.max_mm[a];
     if (std::max(below, above) > kOut_mm)
       out += fmt::format("{}{}{} by {:.2f} mm", out.empty() ? "" : " and ", below > above ? '-' : '+', "XYZ"[a],
                          std::max(below, above));

@@ -254,6 +254,10 @@ TEST(Plausibility, StockThatLiesElsewhereOrIsTooSmall) {
                      "part-in-stock"),
             "part.stl: warning: the part rises out of the stock by up to 0.97 mm, at X19.93 Y0.20; a stock that holds "
             "the part was expected [part-in-stock]\n");
+  EXPECT_EQ(
+      of_check(said({.part = roof_stl({0, -1.5, 0})}), "part-in-stock"),
+      "part.stl: warning: the part stands out of the stock towards -Y by 1.50 mm, though it would fit in; a stock "
+      "that holds the part was expected (the place of either?) [part-in-stock]\n");
 }
 
 TEST(Plausibility, RulesHaveNamesOfTheirOwnAndAreDescribed) {
