@@ -11,7 +11,6 @@ namespace camber::nc {
 namespace {
 
 constexpr char kLetters[] = "ABC";
-constexpr char kAxisLetters[] = "XYZ";
 /// Commands that read rotary axes, on a machine with [kinematics].
 constexpr char kReaders[] = "check, time, feed, fit-feed, predict, compensate and post";
 

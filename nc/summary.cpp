@@ -34,7 +34,7 @@ std::vector<std::size_t> tool_change_blocks(const Interpretation& program) {
   for (const Event& event : program.events)
     if (event.kind == EventKind::tool_change) blocks.push_back(event.block);
   std::ranges::sort(blocks);
-  blocks.erase(std::ranges::unique(blocks).begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
   return blocks;
 }
 

@@ -89,7 +89,7 @@ class Emitter {
 
   // emitter_arcs.cpp
   void go_on_arc(BlockWriter& writer, const Move& move, const MoveEdit* edit);
-  WantedArc wanted_arc(const BlockWriter& writer, const Move& move, const MoveEdit* edit, const Arc& arc) const;
+  WantedArc wanted_arc(const Move& move, const MoveEdit* edit, const Arc& arc) const;
   bool is_as_before(const BlockWriter& writer, const Move& move, const WantedArc& wanted) const;
   Arc arc_in_program(const Move& move) const;
   bool write_split(const Move& move, const MoveEdit& edit, const WantedArc& wanted);

@@ -35,7 +35,7 @@ bool is_split_as_it_is(const MoveEdit& edit) {
 
 void Emitter::go_on_arc(BlockWriter& writer, const Move& move, const MoveEdit* edit) {
   const Arc arc = arc_in_program(move);
-  WantedArc wanted = wanted_arc(writer, move, edit, arc);
+  WantedArc wanted = wanted_arc(move, edit, arc);
   const bool split = edit && !edit->via.empty();
   if (is_as_before(writer, move, wanted) && !(split && is_split_as_it_is(*edit))) {
     at_ = move.end_mm;
@@ -66,7 +66,7 @@ void Emitter::go_on_arc(BlockWriter& writer, const Move& move, const MoveEdit* e
   }
 }
 
-WantedArc Emitter::wanted_arc(const BlockWriter& writer, const Move& move, const MoveEdit* edit, const Arc& arc) const {
+WantedArc Emitter::wanted_arc(const Move& move, const MoveEdit* edit, const Arc& arc) const {
   WantedArc wanted;
   wanted.plane = plane_of(arc);
   const PlaneAxes axes = axes_of(wanted.plane);

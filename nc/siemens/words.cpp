@@ -15,7 +15,7 @@ constexpr auto kProcedure = WordKind::procedure;
 constexpr std::string_view kByMoves = "the moves themselves, G0 to G3, from the CAM system";
 constexpr std::string_view kByLines = "G1 to G3 within a tolerance, from the CAM system";
 
-constexpr std::array kRows = {
+constexpr auto kRows = std::to_array<WordRow>({
     // path
     WordRow{"CR", kAddress, Does::radius, "radius of an arc"},
     WordRow{"AR", kAddress, Does::opening_angle, "opening angle of an arc"},
@@ -353,7 +353,7 @@ constexpr std::array kRows = {
     WordRow{"SLOT2", kCycle, Does::refused, "circular slots", kByMoves},
     WordRow{"POCKET1", kCycle, Does::refused, "rectangular pocket", kByMoves},
     WordRow{"POCKET2", kCycle, Does::refused, "circular pocket", kByMoves},
-};
+});
 
 constexpr std::array kFunctions = {
     FunctionRow{"SIN"},

@@ -91,9 +91,10 @@ TEST_P(SiemensPrograms, HaveTheExpectedMoves) {
   options.rotary_axes = {{.letter = 'A'}, {.letter = 'B'}, {.letter = 'C'}};
   const Read r = read_text(read_file(folder + "/siemens/" + name), options, folder + "/siemens/" + name);
   // A rectangular spigot under MCALL, which no control runs: refused by name.
-  for (const std::string& message : r.messages)
-    if (name != "nx_dmu70_evo_inch.mpf" || message.find("CYCLE76") == std::string::npos)
-      EXPECT_EQ(message.find(": error: "), std::string::npos) << message;
+  for (const std::string& message : r.messages) {
+    if (name == "nx_dmu70_evo_inch.mpf" && message.find("CYCLE76") != std::string::npos) continue;
+    EXPECT_EQ(message.find(": error: "), std::string::npos) << message;
+  }
   EXPECT_EQ(r.program.language, LanguageId::siemens);
   EXPECT_EQ(emit(r.program, r.moves, {}, {}), r.program.source.text());
 
