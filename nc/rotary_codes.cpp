@@ -6,26 +6,16 @@
 
 #include "base/units.h"
 #include "nc/block_interpreter.h"
+#include "nc/rotary_words.h"
 
 namespace camber::nc {
 namespace {
 
 constexpr char kLetters[] = "ABC";
-/// Commands that read rotary axes, on a machine with [kinematics].
-constexpr char kReaders[] = "check, time, feed, fit-feed, predict, compensate and post";
-
-std::uint8_t bit_of(char letter) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(letter - 'A')); }
-
-/// `angle` plus whole turns, at most half a turn from `from`; half a turn is positive, whatever the rounding.
-double shortest_way(double angle, double from) {
-  return angle + 2 * kPi * std::floor((from - angle) / (2 * kPi) + 0.5 + 1e-9);
-}
-
 }  // namespace
 
 const RotaryOption* BlockInterpreter::rotary_axis(char letter) const {
-  const auto at = std::ranges::find(options_.rotary_axes, letter, &RotaryOption::letter);
-  return at == options_.rotary_axes.end() ? nullptr : &*at;
+  return rotary_axis_of(options_.rotary_axes, letter);
 }
 
 // --- clamps
@@ -36,9 +26,9 @@ bool BlockInterpreter::read_clamp(const Code& code) {
   for (const RotaryOption& axis : options_.rotary_axes) {
     if (axis.clamp_m == 0 || (code.tenths != 10 * axis.clamp_m && code.tenths != 10 * axis.unclamp_m)) continue;
     if (code.tenths == 10 * axis.clamp_m)
-      clamped_ = static_cast<std::uint8_t>(clamped_ | bit_of(axis.letter));
+      clamped_ = static_cast<std::uint8_t>(clamped_ | bit_of_axis(axis.letter));
     else
-      clamped_ = static_cast<std::uint8_t>(clamped_ & ~bit_of(axis.letter));
+      clamped_ = static_cast<std::uint8_t>(clamped_ & ~bit_of_axis(axis.letter));
     found = true;
   }
   if (found) add_event(EventKind::m_code, code.word->value);
@@ -182,7 +172,7 @@ void BlockInterpreter::read_rotary_word(const RotaryOption& axis, RotaryTarget& 
   }
   double& end = target.end[letter - 'A'];
   const double shift_rad = request_.machine_frame ? 0 : frames_.offsets.rotary_rad(state_.work_offset)[letter - 'A'];
-  const bool unknown = (angles_unknown_ & bit_of(letter)) != 0;
+  const bool unknown = (angles_unknown_ & bit_of_axis(letter)) != 0;
   if (state_.incremental && unknown && !(request_.reference && value_rad == 0))
     error(offset, "rotary-axis",
           fmt::format("{} in G91 after {}, which leaves its position open; G90 was expected", letter, direction_code_),
@@ -192,9 +182,9 @@ void BlockInterpreter::read_rotary_word(const RotaryOption& axis, RotaryTarget& 
   else
     end = axis.shortest_way && !unknown ? shortest_way(value_rad + shift_rad, end) : value_rad + shift_rad;
   if (axis.shortest_way && unknown && !state_.incremental)
-    target.shortest = static_cast<std::uint8_t>(target.shortest | bit_of(letter));
-  target.given = static_cast<std::uint8_t>(target.given | bit_of(letter));
-  if ((clamped_ & bit_of(letter)) != 0 && end != rotary_rad_[letter - 'A'])
+    target.shortest = static_cast<std::uint8_t>(target.shortest | bit_of_axis(letter));
+  target.given = static_cast<std::uint8_t>(target.given | bit_of_axis(letter));
+  if ((clamped_ & bit_of_axis(letter)) != 0 && end != rotary_rad_[letter - 'A'])
     error(
         offset, "clamped",
         fmt::format("{} turns while M{} has it clamped; M{} was expected before", letter, axis.clamp_m, axis.unclamp_m),
@@ -224,7 +214,8 @@ void BlockInterpreter::read_tool_direction() {
 
 /// What a message says of a code that turns rotary axes, on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
-  return fmt::format("{} ({}) is read on a machine with [kinematics], by camber {}", code_text(code), name, kReaders);
+  return fmt::format("{} ({}) is read on a machine with [kinematics], by camber {}", code_text(code), name,
+                     kReadersOfRotaryAxes);
 }
 
 /// G10 L2 A B C.
@@ -238,9 +229,9 @@ void BlockInterpreter::turn_home(bool all, std::uint8_t letters, const Vec3& hom
   RotaryTarget target;
   target.end = rotary_rad_;
   for (const RotaryOption& axis : options_.rotary_axes)
-    if (all || (letters & bit_of(axis.letter)) != 0) {
+    if (all || (letters & bit_of_axis(axis.letter)) != 0) {
       target.end[axis.letter - 'A'] = home_rad[axis.letter - 'A'];
-      target.given = static_cast<std::uint8_t>(target.given | bit_of(axis.letter));
+      target.given = static_cast<std::uint8_t>(target.given | bit_of_axis(axis.letter));
     }
   if (target.given != 0 && ((angles_unknown_ & target.given) != 0 || target.end != rotary_rad_))
     rotary_target_ = target;
@@ -274,7 +265,7 @@ void BlockInterpreter::check_rotary_letter(char letter) {
     if (words_.value(letter) != 0)
       error(words_.offset_of(letter), "rotary-axis",
             fmt::format("rotary axis {} is read on a machine with [kinematics], by camber {}; X, Y and Z were expected",
-                        letter, kReaders),
+                        letter, kReadersOfRotaryAxes),
             std::string(1, letter));
     else
       report_.warning(words_.offset_of(letter), "rotary-axis",

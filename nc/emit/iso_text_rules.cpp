@@ -4,13 +4,12 @@
 #include <initializer_list>
 
 #include "nc/emit/block_writer.h"
-#include "nc/emit/text_rules.h"
+#include "nc/emit/letter_arcs.h"
 #include "nc/iso_language.h"
 
 namespace camber::nc {
 namespace {
 
-constexpr char kCentre[] = "IJK";
 constexpr std::string_view kOrder = "XYZIJKR";  ///< where added words go
 
 bool has_code(std::span<const Word> words, char letter, std::initializer_list<double> codes) {
@@ -19,9 +18,9 @@ bool has_code(std::span<const Word> words, char letter, std::initializer_list<do
   });
 }
 
-class IsoTextRules : public TextRules {
+class IsoTextRules : public LetterArcs {
  public:
-  using TextRules::TextRules;
+  using LetterArcs::LetterArcs;
 
   bool goes_to_machine_place(std::uint32_t block) const override {
     return has_code(program_.words_of(block), 'G', {28, 29, 30, 53});
@@ -94,36 +93,7 @@ class IsoTextRules : public TextRules {
     return block;
   }
 
-  bool by_radius(std::uint32_t block) const override {
-    return std::ranges::any_of(program_.words_of(block), [](const Word& w) { return w.letter == 'R'; });
-  }
-
   bool absolute_centre(const ModalState& state, std::uint32_t) const override { return state.absolute_arc_centre; }
-
-  void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm,
-               int decimals) override {
-    if (wanted.by_radius) return writer.set('R', arc.r_mm / unit_mm, decimals);
-    const PlaneAxes axes = axes_of(wanted.plane);
-    const auto set_centre = [&](char letter, double value_mm) {
-      if (writer.find(letter) || value_mm != 0) writer.set(letter, value_mm / unit_mm, decimals);
-    };
-    set_centre(kCentre[axes.first], arc.first_mm);
-    set_centre(kCentre[axes.second], arc.second_mm);
-  }
-
-  std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
-                          const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) override {
-    const PlaneAxes axes = axes_of(wanted.plane);
-    std::vector<NewWord> of_arc;
-    if (wanted.by_radius)
-      of_arc = {{'R', arc.r_mm / unit_mm, decimals}};
-    else
-      of_arc = {{kCentre[axes.first], arc.first_mm / unit_mm, decimals},
-                {kCentre[axes.second], arc.second_mm / unit_mm, decimals}};
-    const auto feed = std::ranges::find(words, 'F', &NewWord::letter);
-    words.insert(feed, of_arc.begin(), of_arc.end());
-    return writer.further_block(words, own);
-  }
 
  private:
   /// Behind the nearest coordinate that comes before it in the usual order; otherwise before the next one; otherwise

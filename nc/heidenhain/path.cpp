@@ -6,6 +6,8 @@
 
 #include "base/units.h"
 #include "nc/heidenhain/klartext.h"
+#include "nc/rotary_words.h"
+#include "nc/shared_states.h"
 
 namespace camber::nc::heidenhain {
 namespace {
@@ -191,12 +193,7 @@ int Klartext::sense_of(const BlockValues& b) {
 std::uint32_t Klartext::state_index() {
   if (!state_changed_) return state_index_;
   state_changed_ = false;
-  auto& states = out_.states;
-  const std::size_t count = states.size(), oldest = count > 8 ? count - 8 : 0;
-  for (std::size_t i = count; i-- > oldest;)
-    if (states[i] == state_) return state_index_ = static_cast<std::uint32_t>(i);
-  states.push_back(state_);
-  return state_index_ = static_cast<std::uint32_t>(count);
+  return state_index_ = shared_state(out_.states, state_);
 }
 
 Move& Klartext::add_move(MoveKind kind, const Vec3& end_mm) {
@@ -375,8 +372,8 @@ void Klartext::add_rotary(const BlockValues& b, std::size_t move) {
   for (unsigned i = 0; i < 3; ++i) {
     if (!b.rotary[i]) continue;
     const char letter = static_cast<char>('A' + i);
-    const auto axis = std::ranges::find(options_.rotary_axes, letter, &RotaryOption::letter);
-    if (axis == options_.rotary_axes.end()) {
+    const RotaryOption* axis = rotary_axis_of(options_.rotary_axes, letter);
+    if (!axis) {
       error(statement_->begin, "rotary-axis", fmt::format("{} is not an axis of the machine's chain", letter),
             std::string(1, letter));
       continue;
@@ -387,7 +384,7 @@ void Klartext::add_rotary(const BlockValues& b, std::size_t move) {
       end += value;
     } else {
       if ((shortest_way_ || axis->shortest_way) && !direction_unknown_)
-        end = value + kFullTurn_rad * std::floor((end - value) / kFullTurn_rad + 0.5 + 1e-9);
+        end = shortest_way(value, end);
       else
         end = value;
       if (direction_unknown_ && (shortest_way_ || axis->shortest_way))

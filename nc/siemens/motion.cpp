@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "nc/frames.h"
+#include "nc/shared_states.h"
 #include "nc/siemens/block_runner.h"
 #include "nc/siemens/line_parser.h"
 
@@ -46,12 +47,7 @@ bool BlockRunner::place_unknown() const {
 std::uint32_t BlockRunner::state_index() {
   if (!state_changed_) return state_index_;
   state_changed_ = false;
-  auto& states = out_.states;
-  const std::size_t count = states.size(), oldest = count > 8 ? count - 8 : 0;
-  for (std::size_t i = count; i-- > oldest;)
-    if (states[i] == state_) return state_index_ = static_cast<std::uint32_t>(i);
-  states.push_back(state_);
-  return state_index_ = static_cast<std::uint32_t>(count);
+  return state_index_ = shared_state(out_.states, state_);
 }
 
 Move& BlockRunner::add_move(MoveKind kind, const Vec3& end_mm) {

@@ -5,26 +5,17 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "nc/rotary_words.h"
 #include "nc/siemens/block_runner.h"
 
 namespace camber::nc::siemens {
 namespace {
 
 constexpr char kAxisLetters[] = "XYZ";
-constexpr char kReaders[] = "check, time, feed, fit-feed, predict, compensate and post";
-
-std::uint8_t bit_of(char letter) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(letter - 'A')); }
-
-double nearest(double angle, double from) {
-  return angle + 2 * kPi * std::floor((from - angle) / (2 * kPi) + 0.5 + 1e-9);
-}
 
 }  // namespace
 
-const RotaryOption* BlockRunner::rotary_axis(char letter) const {
-  const auto at = std::ranges::find(options_.rotary_axes, letter, &RotaryOption::letter);
-  return at == options_.rotary_axes.end() ? nullptr : &*at;
-}
+const RotaryOption* BlockRunner::rotary_axis(char letter) const { return rotary_axis_of(options_.rotary_axes, letter); }
 
 void BlockRunner::check_rotary_letter(char letter) {
   const Slot& slot = words_.of(letter);
@@ -32,7 +23,7 @@ void BlockRunner::check_rotary_letter(char letter) {
     if (slot.value != 0)
       error(slot.offset, "rotary-axis",
             fmt::format("rotary axis {} is read on a machine with [kinematics], by camber {}; X, Y and Z were expected",
-                        letter, kReaders),
+                        letter, kReadersOfRotaryAxes),
             std::string(1, letter));
     else
       report_.warning(slot.offset, "rotary-axis",
@@ -76,7 +67,7 @@ void BlockRunner::read_rotary_words() {
       error(words_.offset(), "rotary-axis",
             fmt::format("A3 B3 C3 (tool direction) are read on a machine with [kinematics], by camber {}; a tool along "
                         "Z was expected",
-                        kReaders),
+                        kReadersOfRotaryAxes),
             "A3");
     return;
   }
@@ -102,7 +93,7 @@ void BlockRunner::read_rotary_word(const RotaryOption& axis, RotaryTarget& targe
   double& end = target.end[letter - 'A'];
   const double value = rad_from_deg(slot.value);
   const double shift = request_.machine_frame ? 0 : offsets_.rotary_rad(state_.work_offset)[letter - 'A'];
-  const bool unknown = (angles_unknown_ & bit_of(letter)) != 0;
+  const bool unknown = (angles_unknown_ & bit_of_axis(letter)) != 0;
   const bool incremental =
       slot.dimension == Dimension::incremental || (slot.dimension == Dimension::as_modal && !absolute_);
   if (incremental) {
@@ -117,8 +108,8 @@ void BlockRunner::read_rotary_word(const RotaryOption& axis, RotaryTarget& targe
     constexpr double kTurn = 2 * kPi, kRounding = 1e-9;
     switch (slot.dimension) {
       case Dimension::nearest:
-        end = unknown ? wanted : nearest(wanted, end);
-        if (unknown) target.shortest = static_cast<std::uint8_t>(target.shortest | bit_of(letter));
+        end = unknown ? wanted : shortest_way(wanted, end);
+        if (unknown) target.shortest = static_cast<std::uint8_t>(target.shortest | bit_of_axis(letter));
         break;
       case Dimension::positive:
         end = wanted + kTurn * std::ceil((end - wanted) / kTurn - kRounding);
@@ -127,11 +118,12 @@ void BlockRunner::read_rotary_word(const RotaryOption& axis, RotaryTarget& targe
         end = wanted + kTurn * std::floor((end - wanted) / kTurn + kRounding);
         break;
       default:
-        end = axis.shortest_way && !unknown ? nearest(wanted, end) : wanted;
-        if (axis.shortest_way && unknown) target.shortest = static_cast<std::uint8_t>(target.shortest | bit_of(letter));
+        end = axis.shortest_way && !unknown ? shortest_way(wanted, end) : wanted;
+        if (axis.shortest_way && unknown)
+          target.shortest = static_cast<std::uint8_t>(target.shortest | bit_of_axis(letter));
     }
   }
-  target.given = static_cast<std::uint8_t>(target.given | bit_of(letter));
+  target.given = static_cast<std::uint8_t>(target.given | bit_of_axis(letter));
 }
 
 /// A3= B3= C3=: the tool's direction in the part's frame.

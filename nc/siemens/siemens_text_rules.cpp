@@ -2,18 +2,18 @@
 #include <algorithm>
 
 #include "nc/emit/block_writer.h"
+#include "nc/emit/letter_arcs.h"
 #include "nc/siemens/line_parser.h"
 #include "nc/siemens/siemens_language.h"
 
 namespace camber::nc::siemens {
 namespace {
 
-constexpr char kCentre[] = "IJK";
 constexpr std::string_view kOrder = "XYZIJKR";
 
-class SiemensTextRules : public TextRules {
+class SiemensTextRules : public LetterArcs {
  public:
-  using TextRules::TextRules;
+  using LetterArcs::LetterArcs;
 
   bool goes_to_machine_place(std::uint32_t block) const override {
     for (const Word& w : program_.words_of(block))
@@ -112,36 +112,7 @@ class SiemensTextRules : public TextRules {
     return block;
   }
 
-  bool by_radius(std::uint32_t block) const override {
-    return std::ranges::any_of(program_.words_of(block), [](const Word& w) { return w.letter == 'R'; });
-  }
-
   bool absolute_centre(const ModalState&, std::uint32_t block) const override { return centre_is_absolute(block); }
-
-  void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm,
-               int decimals) override {
-    if (wanted.by_radius) return writer.set('R', arc.r_mm / unit_mm, decimals);
-    const PlaneAxes axes = axes_of(wanted.plane);
-    const auto set_centre = [&](char letter, double value_mm) {
-      if (writer.find(letter) || value_mm != 0) writer.set(letter, value_mm / unit_mm, decimals);
-    };
-    set_centre(kCentre[axes.first], arc.first_mm);
-    set_centre(kCentre[axes.second], arc.second_mm);
-  }
-
-  std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
-                          const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) override {
-    const PlaneAxes axes = axes_of(wanted.plane);
-    std::vector<NewWord> of_arc;
-    if (wanted.by_radius)
-      of_arc = {{'R', arc.r_mm / unit_mm, decimals}};
-    else
-      of_arc = {{kCentre[axes.first], arc.first_mm / unit_mm, decimals},
-                {kCentre[axes.second], arc.second_mm / unit_mm, decimals}};
-    const auto feed = std::ranges::find(words, 'F', &NewWord::letter);
-    words.insert(feed, of_arc.begin(), of_arc.end());
-    return writer.further_block(words, own);
-  }
 
  private:
   const Statement* statement(std::uint32_t block) const { return tree_of(program_).statement(block); }

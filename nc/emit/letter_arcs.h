@@ -1,0 +1,21 @@
+#pragma once
+// Arcs of languages that say the centre by I J K and the radius by R.
+#include "nc/emit/text_rules.h"
+
+namespace camber::nc {
+
+class LetterArcs : public TextRules {
+ public:
+  using TextRules::TextRules;
+
+  bool by_radius(std::uint32_t block) const override;
+  void set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm,
+               int decimals) override;
+  std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
+                          const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) override;
+
+ protected:
+  static constexpr char kCentre[] = "IJK";  ///< by axis
+};
+
+}  // namespace camber::nc
