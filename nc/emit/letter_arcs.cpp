@@ -11,7 +11,7 @@ bool LetterArcs::by_radius(std::uint32_t block) const {
 }
 
 void LetterArcs::set_arc(BlockWriter& writer, const WantedArc& wanted, const RoundedArc& arc, double unit_mm,
-             int decimals) {
+                         int decimals) {
   if (wanted.by_radius) return writer.set('R', arc.r_mm / unit_mm, decimals);
   const PlaneAxes axes = axes_of(wanted.plane);
   const auto set_centre = [&](char letter, double value_mm) {
@@ -22,7 +22,7 @@ void LetterArcs::set_arc(BlockWriter& writer, const WantedArc& wanted, const Rou
 }
 
 std::string LetterArcs::further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
-                        const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) {
+                                    const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) {
   const PlaneAxes axes = axes_of(wanted.plane);
   std::vector<NewWord> of_arc;
   if (wanted.by_radius)
