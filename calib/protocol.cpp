@@ -9,7 +9,7 @@
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
-#include "nc/language.h"
+#include "nc/write/program_writer.h"
 
 namespace camber::calib {
 namespace {
@@ -27,40 +27,31 @@ constexpr std::array kTurnFeeds = {300.0, 1000.0, 3000.0, 30000.0};  // degrees/
 constexpr std::array kRapids = {1.0, 3.0, 10.0, 30.0, 100.0};
 constexpr std::array<std::array<int, 2>, 3> kPlaneAxes = {{{0, 1}, {1, 2}, {2, 0}}};
 constexpr std::array<const char*, 3> kPlanes = {"xy", "yz", "zx"};
-constexpr std::array<const char*, 3> kPlaneCodes = {"G17", "G19", "G18"};
+constexpr std::array<nc::Plane, 3> kArcPlanes = {nc::Plane::xy, nc::Plane::yz, nc::Plane::zx};
 constexpr double kSaturationFeed = 10000.0;  // mm/min
 constexpr double kSaturationRadius = 40.0;   // mm; chords of 0.5 mm turn by 0.7 degrees
 constexpr double kSaturationLength = 15.0;   // mm of each chord length
 constexpr double kZigzagSide = 4.0;          // mm
 constexpr int kZigzagSides = 24;
 
+/// One program of parts that begin and end in the origin.
 class Writer {
  public:
-  Writer(const machine::Machine& machine, std::string name, std::string tells)
-      : machine_(machine), dialect_(feedmodel::dialect_of(machine.control.kind)) {
-    nc::require_iso(dialect_, machine.path, "protocol");
+  Writer(const machine::Machine& machine, const std::string& name, std::string tells)
+      : machine_(machine),
+        dialect_(feedmodel::dialect_of(machine.control.kind)),
+        writer_(nc::program_writer(dialect_, {.title = name, .decimals = 6, .corner_tolerance_mm = 0.01})) {
     program_.name = name + std::string(dialect_.file_extension);
     program_.tells = std::move(tells);
-    line("%");
-    if (dialect_.has_program_number) line("O0001");
-    line("(" + name + ")");
-    line(std::string("G21 G90 G94 G40 G49 G80 G17") + (dialect_.g64_p_is_tolerance ? " G64 P0.01" : ""));
-    line("G0 X0 Y0 Z0");
+    writer_->begin();
+    writer_->rapid(Vec3::Zero());
     rest();
   }
 
   ProtocolProgram finish() {
-    line(std::string(dialect_.program_end));
-    line("%");
+    program_.text = nc::text_of(dialect_, writer_->finish());
     return std::move(program_);
   }
-
-  void line(const std::string& text) {
-    program_.text += text + "\n";
-    ++lines_;
-  }
-
-  void rest() { line(dialect_.dwell_p_is_ms ? "G4 P200" : "G4 P0.2"); }
 
   double feed_within_limits(double feed_mm_per_min) const {
     double least = feed_mm_per_min;
@@ -71,75 +62,73 @@ class Writer {
 
   /// Points of a plane as feed moves, from the origin; back to it by a rapid.
   void part(int plane, const std::vector<std::array<double, 2>>& points, double angle_deg, double feed, double size) {
-    ProtocolPart part;
+    ProtocolPart part = begin(feed_within_limits(feed), kPlanes[plane], size);
     part.angle_deg = angle_deg;
-    part.feed_mm_per_min = feed_within_limits(feed);
-    part.plane = kPlanes[plane];
-    part.size_mm = size;
-    part.line_first = lines_ + 1;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      line("G1" + words(plane, points[i]) + (i == 0 ? fmt::format(" F{:g}", part.feed_mm_per_min) : ""));
-    part.line_last = lines_;
-    close(part);
+    for (const auto& [first, second] : points) {
+      Vec3 to = Vec3::Zero();
+      to[kPlaneAxes[plane][0]] = first;
+      to[kPlaneAxes[plane][1]] = second;
+      writer_->line(to, part.feed_mm_per_min);
+    }
+    end(part);
+    go_back();
   }
 
   void circle(int plane, double radius, double feed) {
-    ProtocolPart part;
-    part.feed_mm_per_min = feed_within_limits(feed);
-    part.plane = kPlanes[plane];
-    part.size_mm = radius;
-    const char* const centre[] = {"I", "J", "K"};
-    line(kPlaneCodes[plane]);
-    part.line_first = lines_ + 1;
-    line("G3" + words(plane, {0, 0}) +
-         fmt::format(" {}{:.4f} {}0 F{:g}", centre[kPlaneAxes[plane][0]], -radius, centre[kPlaneAxes[plane][1]],
-                     part.feed_mm_per_min));
-    part.line_last = lines_;
+    ProtocolPart part = begin(feed_within_limits(feed), kPlanes[plane], radius);
+    writer_->arc(Vec3::Zero(), {-radius, 0}, true, part.feed_mm_per_min, kArcPlanes[plane]);
+    end(part);
     rest();
-    line("G17");
-    program_.parts.push_back(part);
   }
 
   /// Out and back twice, from 0.
   void turn(char letter, double to_deg, double feed_deg_per_min) {
-    ProtocolPart part;
-    part.feed_mm_per_min = feed_deg_per_min;
-    part.plane = letter;
-    part.size_mm = std::abs(to_deg);
-    part.line_first = lines_ + 1;
+    ProtocolPart part = begin(feed_deg_per_min, std::string(1, letter), std::abs(to_deg));
     const char word = static_cast<char>(letter - 'a' + 'A');
-    for (int i = 0; i < 2; ++i) {
-      line(fmt::format("G1 {}{:.4f} F{:g}", word, to_deg, feed_deg_per_min));
-      line(fmt::format("G1 {}0", word));
-    }
-    part.line_last = lines_;
+    for (int i = 0; i < 2; ++i)
+      for (const double angle : {to_deg, 0.0}) writer_->turn(word, angle, feed_deg_per_min);
+    end(part);
     rest();
-    program_.parts.push_back(part);
   }
 
   void rapid(int axis, double to_mm) {
-    line(fmt::format("G0 {}{:.4f}", "XYZ"[axis], to_mm));
+    Vec3 to = Vec3::Zero();
+    to[axis] = to_mm;
+    writer_->rapid(to);
     rest();
-    line("G0 X0 Y0 Z0");
-    rest();
+    go_back();
   }
+
+  void stop_exactly() { writer_->stop_exactly(); }
 
  private:
-  static std::string words(int plane, const std::array<double, 2>& p) {
-    return fmt::format(" {}{:.6f} {}{:.6f}", "XYZ"[kPlaneAxes[plane][0]], p[0], "XYZ"[kPlaneAxes[plane][1]], p[1]);
+  ProtocolPart begin(double feed, const std::string& plane, double size) const {
+    ProtocolPart part;
+    part.feed_mm_per_min = feed;
+    part.plane = plane;
+    part.size_mm = size;
+    part.line_first = line() + 1;
+    return part;
   }
 
-  void close(const ProtocolPart& part) {
-    rest();
-    line("G0 X0 Y0 Z0");
-    rest();
+  void end(ProtocolPart& part) {
+    part.line_last = line();
     program_.parts.push_back(part);
   }
 
+  void go_back() {
+    rest();
+    writer_->rapid(Vec3::Zero());
+    rest();
+  }
+
+  void rest() { writer_->dwell(0.2); }
+  int line() const { return static_cast<int>(writer_->lines()); }
+
   const machine::Machine& machine_;
   const nc::Dialect& dialect_;
+  std::unique_ptr<nc::ProgramWriter> writer_;
   ProtocolProgram program_;
-  int lines_ = 0;
 };
 
 using Points = std::vector<std::array<double, 2>>;
@@ -241,7 +230,7 @@ ProtocolProgram rotary(const machine::Machine& machine) {
   };
   turn_all(kTurnFeeds);
   if (machine.control.kind.turning_blocks_overlap) {
-    w.line("G61");
+    w.stop_exactly();
     turn_all(std::span(kTurnFeeds).last(1));
   }
   return w.finish();

@@ -118,7 +118,6 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   }
   const nc::Program program =
       nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
-  nc::require_iso(program, "compress");
   const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
   settle(diagnostics, options);
 
@@ -136,7 +135,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
       result.runs.empty() ? repath::why_unchanged(program, moves, repath::RunKind::in_space) : std::string();
 
   Diagnostics again;  // what it says of the text was said above; an error is ours
-  const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.text), again);
+  const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.text), program.language, again);
   const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
   again.throw_if_errors();
   const Figures before = with_time(program, moves, machine, compress_options.feeds),

@@ -17,7 +17,6 @@
 #include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
 #include "machine/unprogrammed_job.h"
-#include "nc/language.h"
 #include "repath/fastest.h"
 #include "repath/raster.h"
 #include "repath/raster_text.h"
@@ -96,7 +95,6 @@ std::optional<double> top_of_stock_mm(const machine::StockDescription& stock) {
 /// Where feed begins: in a stock that is left all over alike a little above it, else above the blank.
 repath::RasterProgram program_of(const RasterArguments& arguments, const machine::Job& job, const machine::Tool& tool,
                                  double part_top_mm, int decimals) {
-  nc::require_iso(feedmodel::dialect_of(job.machine.control.kind), job.machine.path, "raster");
   repath::RasterProgram out{.dialect = feedmodel::dialect_of(job.machine.control.kind),
                             .tool = tool,
                             .spindle_rpm = arguments.spindle_rpm,

@@ -125,7 +125,6 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   const nc::InterpreterOptions interpreter = feedmodel::interpreter_options(machine, arguments.interpreter);
   const nc::Program program =
       nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
-  nc::require_iso(program, "resegment");
   const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
   settle(diagnostics, options);
 
@@ -140,7 +139,8 @@ int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& opti
   const repath::Fastest result = repath::find_fastest(program, moves, machine, before, fastest);
 
   Diagnostics again;
-  const nc::Program new_program = nc::read_program(SourceText(arguments.output, result.path.text), again);
+  const nc::Program new_program =
+      nc::read_program(SourceText(arguments.output, result.path.text), program.language, again);
   const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
   again.throw_if_errors();
   const auto measured = repath::measure_deviation(moves, new_moves, result.path.runs, arguments.tolerance_mm);

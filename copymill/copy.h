@@ -12,6 +12,7 @@
 #include "copymill/part_check.h"
 #include "machine/copy_operations.h"
 #include "machine/job.h"
+#include "nc/write/program_writer.h"
 #include "removal/stock.h"
 #include "simulate/force_regions.h"
 
@@ -34,6 +35,7 @@ struct CopyOptions {
   /// False: no load of an operation without force_N is read, and the stock is cut all at once when it ends. For those
   /// who want the path alone.
   bool loads = true;
+  bool coolant = false;  ///< in the program, on while a tool cuts
   /// Called before each operation, by its number from 0, with what stands; may be empty.
   std::function<void(std::size_t, const removal::Stock&)> before{};
   /// Parts of the material that are harder than the job says: felt, but not expected.
@@ -59,6 +61,7 @@ struct OperationSummary {
 
 struct CopyResult {
   std::string text;                              ///< the NC program
+  nc::WrittenProgram program;                    ///< the same in pieces: head, operations, end
   std::unique_ptr<removal::Stock> blank, stock;  ///< before the first cut, and what is left
   std::vector<OperationSummary> operations;
   double time_s = 0;

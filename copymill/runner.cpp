@@ -5,8 +5,10 @@
 #include <ctime>
 #include <limits>
 
+#include <fmt/format.h>
+
+#include "base/units.h"
 #include "feedmodel/control_options.h"
-#include "nc/language.h"
 #include "removal/tile_size.h"
 
 namespace camber::copymill {
@@ -18,6 +20,27 @@ constexpr double kNoLimit_mm_per_s = std::numeric_limits<double>::infinity();
 double smallest_diameter_mm(const machine::Job& job) {
   double out = std::numeric_limits<double>::infinity();
   for (const auto& [number, tool] : job.tools) out = std::min(out, tool.diameter_mm);
+  return out;
+}
+
+std::string tool_text(const machine::Tool& tool) {
+  switch (tool.type) {
+    case machine::ToolType::ball:
+      return fmt::format("BALL D{:g}", tool.diameter_mm);
+    case machine::ToolType::flat:
+      return fmt::format("FLAT D{:g}", tool.diameter_mm);
+    case machine::ToolType::bull:
+      return fmt::format("BULL NOSE D{:g} R{:g}", tool.diameter_mm, tool.corner_radius_mm);
+    case machine::ToolType::drill:
+      return fmt::format("DRILL D{:g}", tool.diameter_mm);
+    default:
+      return fmt::format("D{:g}", tool.diameter_mm);
+  }
+}
+
+std::string upper(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
   return out;
 }
 
@@ -35,10 +58,11 @@ Runner::Runner(const machine::Job& job, const CopyOptions& options, removal::Sto
       options_(options),
       stock_(stock),
       motion_(job.machine),
-      writer_(feedmodel::dialect_of(job.machine.control.kind), 3),
+      dialect_(feedmodel::dialect_of(job.machine.control.kind)),
+      writer_(nc::program_writer(dialect_, {.title = "COPY MILLING", .coolant = options.coolant})),
       piece_options_{.tolerance_mm = options.tolerance_mm},
       clear_height_(stock, smallest_diameter_mm(job)) {
-  nc::require_iso(feedmodel::dialect_of(job.machine.control.kind), job.machine.path, "copy");
+  writer_->begin();
 }
 
 void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth* depth, double lowest) {
@@ -56,7 +80,10 @@ void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth*
                     removal::TipBox{{tips.min_mm.x(), tips.min_mm.y(), lowest - 0.01},
                                     {tips.max_mm.x(), tips.max_mm.y(), safe_z_ + 1}},
                     options_.regions, first_id_, options_.loads);
-  writer_.begin(cut.operation, cut.tool, safe_z_);
+  writer_->change_tool({.number = cut.tool.number,
+                        .comment = tool_text(cut.tool) + ", " + upper(machine::word_of(cut.operation.mode)),
+                        .spindle_rpm = cut.operation.spindle_rpm,
+                        .safe_z_mm = safe_z_});
 }
 
 void Runner::end() {
@@ -80,8 +107,8 @@ Runner::Ended Runner::rapid(const Vec3& to) {
   if (!at_) {  // the first place of a tool: nothing is known of the way there
     at_ = target;
     motion_.place(target);
-    writer_.rapid({target.x(), target.y(), safe_z_});
-    if (target.z() != safe_z_) writer_.rapid(target);
+    writer_->rapid({target.x(), target.y(), safe_z_});
+    if (target.z() != safe_z_) writer_->rapid(target);
     return ended();
   }
   if ((target - *at_).norm() <= 0) return ended();
@@ -135,7 +162,7 @@ Runner::Ended Runner::run(std::vector<PathPiece> path, bool rapid, double feed_s
     stamp_at(t_s_, end);
     summary_.cutting_s += t_s_ - begin_s;
   } else {
-    writer_.rapid(end);
+    writer_->rapid(end);
   }
   at_ = end;
   summary_.time_s += t_s_ - begin_s;
@@ -224,20 +251,29 @@ void Runner::lower_standing(const Vec3& tip) {
   last_lowered_ = tip;
 }
 
+void Runner::write_cut(const PathPiece& piece, double feed) {
+  const double feed_mm_per_min = mm_per_min_from_mm_per_s(feed);
+  if (piece.arc)
+    writer_->arc(piece.to, piece.centre, piece.sweep_rad > 0, feed_mm_per_min);
+  else
+    writer_->line(piece.to, feed_mm_per_min);
+}
+
 void Runner::write_to(std::size_t piece, double along, double feed) {
   const std::vector<PathPiece>& path = motion_.path();
   for (; written_piece_ < piece; ++written_piece_, written_mm_ = 0)
-    writer_.cut(part_of(path[written_piece_], written_mm_, path[written_piece_].length_mm, piece_options_.increment_mm),
-                feed);
+    write_cut(part_of(path[written_piece_], written_mm_, path[written_piece_].length_mm, piece_options_.increment_mm),
+              feed);
   if (piece < path.size() && along > written_mm_) {
-    writer_.cut(part_of(path[piece], written_mm_, along, piece_options_.increment_mm), feed);
+    write_cut(part_of(path[piece], written_mm_, along, piece_options_.increment_mm), feed);
     written_mm_ = along;
   }
 }
 
 void Runner::finish(CopyResult& result) {
-  result.text = writer_.finish();
-  result.blocks = writer_.blocks();
+  result.program = writer_->finish();
+  result.text = nc::text_of(dialect_, result.program);
+  result.blocks = writer_->lines();
   result.time_s = t_s_;
   result.ticks = ticks_;
   const double per_ms = 1e-6;

@@ -10,7 +10,6 @@
 #include "copymill/load_follower.h"
 #include "copymill/motion.h"
 #include "copymill/part_check.h"
-#include "copymill/program_writer.h"
 #include "copymill/standing.h"
 #include "removal/cutter.h"
 #include "removal/tool_path.h"
@@ -83,6 +82,7 @@ class Runner {
   void stamp_at(double t_s, const Vec3& tip);
   void command(double feed_mm_per_s);
   void lower_standing(const Vec3& tip);
+  void write_cut(const PathPiece& piece, double feed_mm_per_s);
   /// Writes the path up to where the motion is.
   void write_to(std::size_t piece, double along_mm, double feed_mm_per_s);
   double feed_mm_per_s(double feed_share) const { return feed_share * follower_->feed_mm_per_s(); }
@@ -91,7 +91,8 @@ class Runner {
   const CopyOptions& options_;
   removal::Stock& stock_;
   Motion motion_;
-  ProgramWriter writer_;
+  const nc::Dialect& dialect_;
+  std::unique_ptr<nc::ProgramWriter> writer_;
   PieceOptions piece_options_;
   ClearHeight clear_height_;
   std::optional<Cut> cut_;

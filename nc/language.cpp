@@ -11,6 +11,7 @@
 #include "nc/heidenhain/heidenhain_language.h"
 #include "nc/iso_language.h"
 #include "nc/siemens/siemens_language.h"
+#include "nc/write/program_writer.h"
 
 namespace camber::nc {
 namespace {
@@ -23,7 +24,8 @@ constexpr std::array kLanguages{Language{.id = LanguageId::iso,
                                          .title = "ISO G code",
                                          .read = read_iso_program,
                                          .interpret = interpret_iso,
-                                         .text_rules = iso_text_rules},
+                                         .text_rules = iso_text_rules,
+                                         .writer = iso_writer},
                                 Language{.id = LanguageId::heidenhain,
                                          .name = "heidenhain",
                                          .title = "Heidenhain Klartext",
@@ -31,7 +33,9 @@ constexpr std::array kLanguages{Language{.id = LanguageId::iso,
                                          .evidence = heidenhain::evidence,
                                          .read = heidenhain::read,
                                          .interpret = heidenhain::interpret,
-                                         .text_rules = heidenhain::text_rules},
+                                         .text_rules = heidenhain::text_rules,
+                                         .writer = heidenhain::writer,
+                                         .lines_have_numbers = true},
                                 Language{.id = LanguageId::siemens,
                                          .name = "siemens",
                                          .title = "Siemens Sinumerik",
@@ -39,7 +43,8 @@ constexpr std::array kLanguages{Language{.id = LanguageId::iso,
                                          .evidence = siemens::evidence,
                                          .read = siemens::read,
                                          .interpret = siemens::interpret,
-                                         .text_rules = siemens::text_rules}};
+                                         .text_rules = siemens::text_rules,
+                                         .writer = siemens::writer}};
 
 std::string extension_of(const std::string& name) {
   const std::size_t point = name.find_last_of("./\\");
@@ -106,16 +111,6 @@ void require_iso(const Program& program, std::string_view command) {
                fmt::format("{} writes ISO G code, and this program is {} ({}); an ISO program was expected", command,
                            language_of(program).title, program.language_reason),
                "not-supported");
-}
-
-void require_iso(const Dialect& dialect, const std::string& machine_file, std::string_view command) {
-  if (dialect.language == LanguageId::iso) return;
-  fail_on_file(
-      machine_file,
-      fmt::format("{} writes ISO G code, and the control of the machine reads {}; a control that reads ISO was "
-                  "expected",
-                  command, language_of(dialect.language).title),
-      "not-supported");
 }
 
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options) {

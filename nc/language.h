@@ -18,6 +18,8 @@
 namespace camber::nc {
 
 class TextRules;
+class ProgramWriter;
+struct WriterFormat;
 
 /// What in a text only this language has.
 struct LanguageEvidence {
@@ -37,6 +39,8 @@ struct Language {
   Interpretation (*interpret)(const Program& program, const InterpreterOptions& options,
                               Diagnostics& diagnostics) = nullptr;
   std::unique_ptr<TextRules> (*text_rules)(const Program& program) = nullptr;
+  std::unique_ptr<ProgramWriter> (*writer)(const Dialect& dialect, WriterFormat format) = nullptr;
+  bool lines_have_numbers = false;  ///< in programs that are written anew
 };
 
 /// All of them; the first is ISO.
@@ -57,9 +61,6 @@ Program read_program(SourceText source, std::optional<LanguageId> language, Diag
 
 /// Throws InputError [not-supported] for a program in another language than ISO, which `command` does not write.
 void require_iso(const Program& program, std::string_view command);
-/// The same for a control: `machine_file` names it.
-void require_iso(const Dialect& dialect, const std::string& machine_file, std::string_view command);
-
 /// Of the dialect in the options.
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options);
 

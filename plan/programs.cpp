@@ -95,37 +95,6 @@ void join_to(machine::CopyOperation& run, const machine::CopyOperation& other) {
   region.z_mm = {std::min((*region.z_mm)[0], low), std::max((*region.z_mm)[1], high)};
 }
 
-bool brings_tool(std::string_view line) {
-  return line.size() > 1 && line[0] == 'T' && line[1] >= '0' && line[1] <= '9' && line.find(" M6") != line.npos;
-}
-
-/// Head, then one text an operation, each from its tool change on, then the end.
-struct Sections {
-  std::string head;
-  std::vector<std::string> operations;
-  std::string end;
-};
-
-Sections sections_of(const std::string& text, bool coolant) {
-  Sections out;
-  std::string* into = &out.head;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size() - 1);
-    const std::string line = text.substr(at, end + 1 - at);
-    at = end + 1;
-    if (brings_tool(line)) into = &out.operations.emplace_back();
-    if (line == "M5\n") {
-      if (coolant) *into += "M9\n";
-      *into += line;
-      into = &out.end;
-      continue;
-    }
-    *into += line;
-    if (coolant && line.starts_with("G43 ")) *into += "M8\n";
-  }
-  return out;
-}
-
 feedmodel::CycleTime cycle_time_of(const std::string& name, const std::string& text, const machine::Job& job) {
   Diagnostics ignored;
   const nc::Program program = nc::read_program(SourceText(name, text), ignored);
@@ -160,7 +129,7 @@ copymill::CopyResult copy_what_fits(const PlanInput& input, const machine::Job& 
                                     std::vector<machine::CopyOperation>& operations,
                                     const std::optional<SavedStocks>& saved, Diagnostics& diagnostics) {
   while (true) {
-    copymill::CopyOptions options{.loads = false};
+    copymill::CopyOptions options{.loads = false, .coolant = input.coolant};
     if (saved)
       options.before = [&](std::size_t k, const removal::Stock& stock) {
         const std::size_t i = operations[k].place.location.line - 1;
@@ -243,24 +212,23 @@ PlanProgram make_program(const PlanInput& input, const machine::Job& job, const 
   std::optional<SavedStocks> saved;
   if (input.compensate) saved.emplace(plan);
   const copymill::CopyResult copied = copy_what_fits(input, job, operations, saved, diagnostics);
-  const Sections sections = sections_of(copied.text, input.coolant);
+  const nc::Dialect& dialect = feedmodel::dialect_of(job.machine.control.kind);
+  nc::WrittenProgram written = copied.program;
   PlanProgram out;
-  out.whole = sections.head;
   out.each.resize(count), out.times_s.resize(count), out.notes.resize(count);
   for (std::size_t k = 0; k < operations.size(); ++k) {
     const std::size_t i = operations[k].place.location.line - 1;
-    std::string section = sections.operations[k];
-    const auto whole = [&] { return sections.head + section + sections.end; };
+    const nc::WrittenProgram one{written.head, {written.operations[k]}, written.end};
+    out.each[i] = nc::text_of(dialect, one);
     if (saved && saved->has(i)) {
-      const CompensatedProgram done = compensated(job, saved->path(i), whole());
-      section = sections_of(done.text, false).operations.at(0);
-      out.notes[i] = done.note;
+      CompensatedProgram done = compensated(job, saved->path(i), out.each[i]);
+      written.operations[k] = nc::operation_of(dialect, one, done.text);
+      out.each[i] = std::move(done.text);
+      out.notes[i] = std::move(done.note);
     }
-    out.each[i] = whole();
     out.times_s[i] = cycle_time_of(name, out.each[i], job).all.time.total_s();
-    out.whole += section;
   }
-  out.whole += sections.end;
+  out.whole = nc::text_of(dialect, written);
   add_warnings(job, name, out.whole, *copied.blank, diagnostics);
   out.figures = {.time_s = cycle_time_of(name, out.whole, job).all.time.total_s(),
                  .removed_mm3 = copied.removed_mm3,

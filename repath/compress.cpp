@@ -77,7 +77,7 @@ class Compressor {
     if (joints_ > 0) out_.rms_kink_rad = std::sqrt(kink_squares_ / static_cast<double>(joints_));
     place_after(out_.runs, replacements_);
     if (joints_ > 0) out_.max_kink_block = block_of(worst_kink_);
-    out_.text = nc::replace_blocks(program_, replacements_);
+    out_.text = style_.rules->renumbered(nc::replace_blocks(program_, replacements_));
     return std::move(out_);
   }
 
@@ -91,6 +91,7 @@ class Compressor {
     const RunChain::Part* part = nullptr;
     std::vector<Primitive> primitives;
     nc::BlockReplacement text;
+    std::vector<std::size_t> line_of;  ///< by primitive
     std::string mode_behind;
   };
 
@@ -99,7 +100,7 @@ class Compressor {
     out.tolerance_mm = options_.tolerance_mm;
     out.increment_mm =
         (moves_.state_of(moves_.moves[run.first_move]).inch ? kMmPerInch : 1) * std::pow(10.0, -style_.decimals);
-    out.helices = options_.helices;
+    out.helices = options_.helices && style_.rules->motion_is_modal();
     if (options_.feeds) out.primitives_per_line_mm = blocks_per_line_mm(*options_.feeds);
     out.arcs = out.arcs && (run.current_plane || options_.switch_planes);
     return out;
@@ -108,7 +109,7 @@ class Compressor {
   Rewrite rewritten(const RunChain& runs, const RunChain::Part& part, const std::vector<Primitive>& chain) const {
     const auto from = [](const Primitive& p, std::uint32_t point) { return p.first < point; };
     const auto begin = std::lower_bound(chain.begin(), chain.end(), part.first_point, from);
-    Rewrite out{&part, {begin, std::lower_bound(begin, chain.end(), part.last_point, from)}, {}, {}};
+    Rewrite out{&part, {begin, std::lower_bound(begin, chain.end(), part.last_point, from)}, {}, {}, {}};
     write(runs, out, false);
     return out;
   }
@@ -117,6 +118,7 @@ class Compressor {
     const Run& run = rewrite.part->run;
     RunLines lines = text_of(program_, moves_, run, runs.path, rewrite.primitives, style_, says_mode);
     rewrite.text = {moves_.moves[run.first_move].block, moves_.moves[run.last_move].block, std::move(lines.lines)};
+    rewrite.line_of = std::move(lines.line_of);
     rewrite.mode_behind = std::move(lines.mode_behind);
   }
 
@@ -170,7 +172,8 @@ class Compressor {
     for (std::size_t k = 0; k < rewrites.size(); ++k) {
       const auto& primitives = rewrites[k].primitives;
       const auto at = std::ranges::find(primitives, kink.point, &Primitive::first);
-      if (at != primitives.end()) return {first + k, static_cast<std::size_t>(at - primitives.begin()), 0};
+      if (at != primitives.end())
+        return {first + k, rewrites[k].line_of[static_cast<std::size_t>(at - primitives.begin())], 0};
     }
     const std::size_t next = std::min<std::size_t>(kink.point + 1, runs.path.block.size() - 1);
     return {kNoRewrite, 0, runs.path.block[next]};

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "nc/language.h"
 #include "repath/smoothed_path.h"
 
 namespace camber::repath {
@@ -25,10 +26,10 @@ constexpr double kFirstFeed = 0.7, kMinFeed = 0.25, kMinFraction = 0.1;
 constexpr double kAim = 0.998;    ///< of the limit
 constexpr double kNearer = 0.99;  ///< than the old program, by so much: worth another one where none keeps to the limit
 
-nc::Interpretation interpreted(const std::string& name, const std::string& text,
+nc::Interpretation interpreted(const std::string& name, const std::string& text, nc::LanguageId language,
                                const nc::InterpreterOptions& options) {
   Diagnostics diagnostics;  // what it says of the text was said of the old one; an error is ours
-  const nc::Program program = nc::read_program(SourceText(name, text), diagnostics);
+  const nc::Program program = nc::read_program(SourceText(name, text), language, diagnostics);
   nc::Interpretation moves = nc::interpret(program, options, diagnostics);
   diagnostics.throw_if_errors();
   return moves;
@@ -59,6 +60,7 @@ class Search {
   Search(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
          const ContourFigures& before, const FastestOptions& options)
       : name_(program.source.name()),
+        language_(program.language),
         machine_(machine),
         options_(options),
         resegmenter_(program, moves, options.layout),
@@ -130,7 +132,7 @@ class Search {
   /// Its number among those tried.
   std::size_t predict(Candidate c) {
     const std::string text = resegmenter_.lay_out(layout_of(c)).text;
-    const nc::Interpretation moves = interpreted(name_, text, options_.interpreter);
+    const nc::Interpretation moves = interpreted(name_, text, language_, options_.interpreter);
     predicted_blocks_ = static_cast<double>(moves.moves.size());
     c.figures = contour_figures(moves, meant_, machine_);
     out_.tried.push_back(c);
@@ -239,6 +241,7 @@ class Search {
   }
 
   std::string name_;
+  nc::LanguageId language_;
   const machine::Machine& machine_;
   const FastestOptions& options_;
   Resegmenter resegmenter_;

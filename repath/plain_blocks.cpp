@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 
+#include "nc/emit/text_rules.h"
+#include "nc/language.h"
 #include "nc/modal_codes.h"
 
 namespace camber::repath {
@@ -55,7 +58,11 @@ bool may_lead(const nc::Word& w) {
 /// Reads the program from its top and keeps what is in force.
 class Walk {
  public:
-  Walk(const nc::Program& program, bool arcs) : program_(program), arcs_(arcs), jumps_(program.macro.flow()) {}
+  Walk(const nc::Program& program, bool arcs)
+      : program_(program),
+        rules_(nc::language_of(program).text_rules(program)),
+        arcs_(arcs),
+        jumps_(rules_->numbers_are_targets()) {}
 
   std::vector<std::uint16_t> run() {
     std::vector<std::uint16_t> out(program_.blocks.size());
@@ -79,6 +86,7 @@ class Walk {
     if (block.flow) return Apart::macro;
     if (block.divided) return Apart::several;
     if (depends_on_switch_) return Apart::behind_skip;
+    if (!rules_->motion_is_modal()) return apart_of(rules_->beside(static_cast<std::uint32_t>(b)));
     std::size_t at = block.offset;
     const std::string& text = program_.source.text();
     const auto blank = [&](std::size_t to) {
@@ -97,6 +105,24 @@ class Walk {
       if (is_motion(w) || !(repeats(w) || (first && modal_key(w) && may_lead(w)))) return Apart::word;
     }
     return blank(block.offset + block.length) ? Apart::nothing : Apart::comment;
+  }
+
+  static Apart apart_of(nc::Beside beside) {
+    switch (beside) {
+      case nc::Beside::nothing:
+        return Apart::nothing;
+      case nc::Beside::comment:
+        return Apart::comment;
+      case nc::Beside::word:
+        return Apart::word;
+      case nc::Beside::expression:
+        return Apart::macro;
+      case nc::Beside::skip:
+        return Apart::skip;
+      case nc::Beside::several:
+        break;
+    }
+    return Apart::several;
   }
 
   bool repeats(const nc::Word& w) const {
@@ -158,6 +184,7 @@ class Walk {
   }
 
   const nc::Program& program_;
+  std::unique_ptr<nc::TextRules> rules_;
   bool arcs_, jumps_;
   std::map<int, double> in_force_;
   bool depends_on_switch_ = false, open_motion_ = false;

@@ -59,7 +59,7 @@ class Resegmenter::Writer {
 
   Resegmentation result() {
     place_after(out_.runs, replacements_);
-    out_.text = nc::replace_blocks(of_.program_, replacements_);
+    out_.text = of_.style_.rules->renumbered(nc::replace_blocks(of_.program_, replacements_));
     return std::move(out_);
   }
 

@@ -8,6 +8,9 @@
 
 #include "base/units.h"
 #include "nc/arcs.h"
+#include "nc/emit/arc_rounding.h"
+#include "nc/emit/block_writer.h"
+#include "nc/language.h"
 #include "repath/plain_blocks.h"
 
 namespace camber::repath {
@@ -64,12 +67,15 @@ class RunBlockWriter {
     return fmt::format("{}", fmt::join(words, style_.numbers.blanks ? " " : ""));
   }
 
-  /// With more decimals where the program's most are not enough to say the place.
-  std::string number(char letter, double value_mm) const {
+  /// More than the program's most where those are not enough to say the place.
+  int decimals_for(double value_mm) const {
     const double value = value_mm / unit_mm_;
     int decimals = style_.decimals;
     while (decimals < kMaxDecimals && std::abs(nc::rounded(value, decimals) - value) * unit_mm_ > 2e-7) ++decimals;
-    return letter + nc::format_number(value, decimals, style_.numbers);
+    return decimals;
+  }
+  std::string number(char letter, double value_mm) const {
+    return letter + nc::format_number(value_mm / unit_mm_, decimals_for(value_mm), style_.numbers);
   }
 
   std::string feed(double factor) const {
@@ -128,7 +134,6 @@ class PointWriter : RunBlockWriter {
     return lines;
   }
 
- private:
   double feed_factor(const Layout& layout, std::size_t k, const LayoutFeeds& feeds) const {
     double out = feeds.factor;
     if (layout.place.empty()) return out;
@@ -169,6 +174,7 @@ class RunWriter : RunBlockWriter {
       mode = now;
       add_coordinates(p, words);
       if (lines.empty()) add_further(words, true);
+      out.line_of.push_back(lines.size());
       lines.push_back(joined(words));
     }
     const bool restores = mode != 1 && mode_is_used_behind(program_, last_block_);
@@ -207,6 +213,95 @@ class RunWriter : RunBlockWriter {
   nc::PlaneAxes axes_;
 };
 
+/// Blocks of languages in which each says how it moves, by the rules of the language.
+class SayingBlockWriter : RunBlockWriter {
+ public:
+  SayingBlockWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const TextStyle& style)
+      : RunBlockWriter(program, moves, run, style),
+        rules_(*style.rules),
+        block_(program, first_block_, style.numbers, rules_) {
+    for (const nc::Word& w : program.words_of(first_block_))
+      if (std::string_view("XYZN").find(w.letter) == std::string_view::npos) own_.push_back(w);
+  }
+
+  RunLines write(const RunPath& path, const Run& run, const std::vector<Primitive>& chain) {
+    const nc::Plane plane = run.normal == 2 ? nc::Plane::xy : run.normal == 1 ? nc::Plane::zx : nc::Plane::yz;
+    const nc::PlaneAxes axes = nc::axes_of(plane);
+    bool arcs = false;
+    for (const Primitive& p : chain) {
+      const Vec2 from = path.points[p.first], to = path.points[p.last];
+      std::vector<nc::NewWord> words;
+      const auto add = [&](int axis, double value) {
+        words.push_back({kAxis[static_cast<std::size_t>(axis)], value / unit_mm_, decimals_for(value)});
+      };
+      for (int i = 0; i < 2; ++i)
+        if (p.arc || from[i] != to[i]) add(i == 0 ? axes.first : axes.second, to[i]);
+      if (!path.heights.empty() && path.heights[p.first] != path.heights[p.last])
+        add(axes.normal, path.heights[p.last]);
+      std::ranges::sort(words, {}, &nc::NewWord::letter);
+      if (!p.arc) {
+        put_line(words);
+        out_.line_of.push_back(out_.lines.size() - 1);
+        continue;
+      }
+      arcs = true;
+      const Vec2 centre = from + p.center_from_start_mm;
+      const nc::RoundedArc arc{centre.x(), centre.y(), 0};
+      const nc::WantedArc wanted{.sweep_rad = p.sweep_rad, .plane = plane};
+      put(rules_.further_arc(block_, words, wanted, arc, unit_mm_, decimals_for(centre.x(), centre.y()), own()));
+      out_.line_of.push_back(out_.lines.size() - 1);
+    }
+    if (arcs)
+      for (const std::string& line : rules_.lines_behind(first_block_, last_block_)) put(line);
+    return std::move(out_);
+  }
+
+  std::vector<std::string> write(const Layout& layout, const std::vector<double>& factors) {
+    double now = 1;
+    for (std::size_t k = 1; k < layout.points.size(); ++k) {
+      std::vector<nc::NewWord> words;
+      const Vec3 &from = layout.points[k - 1], &to = layout.points[k];
+      for (int a = 0; a < 3; ++a)
+        if (from[a] != to[a])
+          words.push_back({kAxis[static_cast<std::size_t>(a)], to[a] / unit_mm_, decimals_for(to[a])});
+      if (factors[k] != now) words.push_back(feed_word(factors[k]));
+      if (factors[k] != 1) std::erase_if(own_, [](const nc::Word& w) { return w.letter == 'F'; });
+      now = factors[k];
+      put_line(words);
+    }
+    if (now != 1) put_line({feed_word(1)});
+    return std::move(out_.lines);
+  }
+
+ private:
+  using RunBlockWriter::decimals_for;
+  int decimals_for(double a_mm, double b_mm) const { return std::max(decimals_for(a_mm), decimals_for(b_mm)); }
+
+  nc::NewWord feed_word(double factor) const {
+    return {'F', factor * feed_mm_per_min_ / unit_mm_, unit_mm_ == 1 ? 1 : 2, &style_.feeds};
+  }
+
+  /// Words of the run's first block that stay: in the first new one.
+  std::span<const nc::Word> own() const {
+    return out_.lines.empty() ? std::span<const nc::Word>(own_) : std::span<const nc::Word>();
+  }
+
+  void put_line(const std::vector<nc::NewWord>& words) { put(block_.further_block(words, own())); }
+
+  void put(const std::string& lines) {
+    for (std::size_t at = 0; at < lines.size();) {
+      const std::size_t end = std::min(lines.find_first_of("\r\n", at), lines.size());
+      out_.lines.push_back(rules_.new_line(lines.substr(at, end - at)));
+      at = std::min(lines.find_first_not_of("\r\n", end), lines.size());
+    }
+  }
+
+  nc::TextRules& rules_;
+  nc::BlockWriter block_;
+  std::vector<nc::Word> own_;
+  RunLines out_;
+};
+
 }  // namespace
 
 bool mode_is_used_behind(const nc::Program& program, std::size_t block) {
@@ -235,18 +330,26 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
   }
   style.decimals = std::min(style.decimals, kMaxDecimals);
   if (moves.whole_numbers_are_increments) style.numbers.whole = nc::WholeStyle::point;
+  style.rules = nc::language_of(program).text_rules(program);
+  style.rules->adapt(style.numbers);
+  style.feeds = nc::feed_style_of(program);
   return style;
 }
 
 RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
                  const std::vector<Primitive>& chain, const TextStyle& style, bool says_mode) {
+  if (!style.rules->motion_is_modal()) return SayingBlockWriter(program, moves, run, style).write(path, run, chain);
   return RunWriter(program, moves, run, path, style).write(chain, says_mode);
 }
 
 std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
                                  const SpacePath& path, const Layout& layout, const TextStyle& style,
                                  const LayoutFeeds& feeds) {
-  return PointWriter(program, moves, run, style).write(path, layout, feeds);
+  const PointWriter points(program, moves, run, style);
+  if (style.rules->motion_is_modal()) return points.write(path, layout, feeds);
+  std::vector<double> factors(layout.points.size(), 1);
+  for (std::size_t k = 1; k < factors.size(); ++k) factors[k] = points.feed_factor(layout, k, feeds);
+  return SayingBlockWriter(program, moves, run, style).write(layout, factors);
 }
 
 }  // namespace camber::repath

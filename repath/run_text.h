@@ -1,9 +1,11 @@
 #pragma once
 // A chain of primitives as NC blocks, in the style of the program.
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "nc/emit/number_style.h"
+#include "nc/emit/text_rules.h"
 #include "repath/compress.h"
 #include "repath/resegment.h"
 
@@ -11,9 +13,10 @@ namespace camber::repath {
 
 /// How the whole program writes; worked out once.
 struct TextStyle {
-  nc::NumberStyle numbers;
+  nc::NumberStyle numbers, feeds;
   int decimals = 3;              ///< the most that a coordinate has; at least 3 (mm) or 4 (inch)
   bool two_digit_codes = false;  ///< G01 rather than G1
+  std::shared_ptr<nc::TextRules> rules{};
 };
 TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves);
 
@@ -22,6 +25,7 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
 /// further words of the run's first block (F, S, M8 ...). `says_mode`: the first block says its G1, G2 or G3.
 struct RunLines {
   std::vector<std::string> lines;
+  std::vector<std::size_t> line_of{};  ///< by primitive: the one in which its move is
   std::string mode_behind{};  ///< G1, where the chain ends on an arc and the blocks behind rely on G1; else empty
 };
 RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,

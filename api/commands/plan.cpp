@@ -10,12 +10,19 @@
 
 #include "base/output_file.h"
 #include "base/temporary_folder.h"
+#include "feedmodel/control_options.h"
 #include "machine/machine_presets.h"
+#include "nc/dialect.h"
 #include "plan/plan_table.h"
 #include "plan/programs.h"
 
 namespace camber::api {
 namespace {
+
+std::string extension_of(const plan::PlanInput& input) {
+  const nc::Dialect& dialect = feedmodel::dialect_of(input.machine.control.kind);
+  return dialect.language == nc::LanguageId::iso ? ".nc" : std::string(dialect.file_extension);
+}
 
 /// "" for the only set-up, "-2" for the second one.
 std::string suffix(const plan::PlanResult& result, std::size_t setup) {
@@ -54,7 +61,7 @@ void add_copy_job(const plan::PlanInput& input, const plan::SetupPlan& setup, co
   if (!as_given) files.emplace_back(blank, plan::stl_text(setup.blank));
   machine::Job job = plan::copy_job(input, part_given ? absolute(input.part_path) : part, as_given ? "" : blank);
   if (!machine::is_preset(job.machine_path)) job.machine_path = absolute(job.machine_path);
-  job.program = fmt::format("program{}.nc", end);
+  job.program = fmt::format("program{}{}", end, extension_of(input));
   if (as_given) job.stock.mesh = absolute(job.stock.mesh), job.stock.vdb = absolute(job.stock.vdb);
   files.emplace_back(fmt::format("job{}.toml", end),
                      plan::copy_job_toml(job, plan::copy_operations(input, setup.plans[setup.best])));
@@ -78,8 +85,8 @@ Programs make_programs(const plan::PlanInput& input, plan::SetupPlan& setup, con
     if (p != setup.best && !(all && of.complete())) continue;
     const std::string operations = plan::copy_job_toml(job, plan::copy_operations(input, of));
     const auto [same, is_new] = by_operations.emplace(operations, p);
-    const std::string name =
-        all ? fmt::format("program-{}{}.nc", plan::to_string(of.division), end) : fmt::format("program{}.nc", end);
+    const std::string name = all ? fmt::format("program-{}{}{}", plan::to_string(of.division), end, extension_of(input))
+                                 : fmt::format("program{}{}", end, extension_of(input));
     out[p] = is_new ? plan::make_program(input, job, of, name, diagnostics) : out[same->second];
     of.program = out[p]->figures;
     for (std::size_t i = 0; i < of.operations.size(); ++i) {
@@ -99,17 +106,19 @@ std::size_t best_program(const plan::SetupPlan& setup) {
   return plan::best_plan(figures);
 }
 
-/// program.nc and one an operation of the plan that is taken, program-<division>.nc of the others.
+/// program.nc and one an operation of the plan that is taken, program-<division>.nc of the others; .h, .mpf where the
+/// control reads those.
 void add_programs(const plan::SetupPlan& setup, const Programs& programs, const std::string& end,
-                  std::vector<std::pair<std::string, std::string>>& files) {
+                  const std::string& extension, std::vector<std::pair<std::string, std::string>>& files) {
   for (std::size_t p = 0; p < programs.size(); ++p)
     if (programs[p] && p != setup.best)
-      files.emplace_back(fmt::format("program-{}{}.nc", plan::to_string(setup.plans[p].division), end),
+      files.emplace_back(fmt::format("program-{}{}{}", plan::to_string(setup.plans[p].division), end, extension),
                          programs[p]->whole);
   const plan::PlanProgram& taken = *programs[setup.best];
   for (std::size_t i = 0; i < taken.each.size(); ++i)
-    if (!taken.each[i].empty()) files.emplace_back(fmt::format("operation{}-{:02}.nc", end, i + 1), taken.each[i]);
-  files.emplace_back(fmt::format("program{}.nc", end), taken.whole);
+    if (!taken.each[i].empty())
+      files.emplace_back(fmt::format("operation{}-{:02}{}", end, i + 1, extension), taken.each[i]);
+  files.emplace_back(fmt::format("program{}{}", end, extension), taken.whole);
 }
 
 void warn_of_turned(const plan::PlanInput& input, const plan::SetupPlan& setup, const std::string& end,
@@ -150,7 +159,7 @@ PlannedFiles plan_job(const plan::PlanInput& input, const PlanJobOptions& option
   for (std::size_t i = 0; i < programs.size(); ++i) {
     const plan::SetupPlan& setup = out.result.setups[i];
     add_copy_job(input, setup, suffix(out.result, i), out.files);
-    if (!programs[i].empty()) add_programs(setup, programs[i], suffix(out.result, i), out.files);
+    if (!programs[i].empty()) add_programs(setup, programs[i], suffix(out.result, i), extension_of(input), out.files);
   }
   return out;
 }

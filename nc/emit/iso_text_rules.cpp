@@ -95,6 +95,8 @@ class IsoTextRules : public LetterArcs {
 
   bool absolute_centre(const ModalState& state, std::uint32_t) const override { return state.absolute_arc_centre; }
 
+  bool numbers_are_targets() const override { return program_.macro.flow(); }
+
  private:
   /// Behind the nearest coordinate that comes before it in the usual order; otherwise before the next one; otherwise
   /// behind the last N or G.

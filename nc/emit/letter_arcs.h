@@ -13,6 +13,7 @@ class LetterArcs : public TextRules {
                int decimals) override;
   std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
                           const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) override;
+  bool motion_is_modal() const override { return true; }
 
  protected:
   static constexpr char kCentre[] = "IJK";  ///< by axis

@@ -16,6 +16,9 @@ namespace camber::nc {
 
 class BlockWriter;
 
+/// What a block holds beside the coordinates, the feed and the block number of a straight cut.
+enum class Beside : std::uint8_t { nothing, comment, word, expression, skip, several };
+
 /// A word of a block that is made anew.
 struct NewWord {
   char letter = 0;
@@ -78,6 +81,20 @@ class TextRules {
   /// What was written before has changed what the block relies on beside position and feed (a pole): lines to put
   /// before it; empty: nothing.
   virtual std::string lines_before(std::uint32_t) { return {}; }
+
+  // Runs of cuts that are written anew
+  /// A block says how it moves only where that changes (G0 to G3); else each block says it.
+  virtual bool motion_is_modal() const = 0;
+  /// Something may jump to block numbers.
+  virtual bool numbers_are_targets() const = 0;
+  /// Where motion is not modal: what keeps the block from being written together with others.
+  virtual Beside beside(std::uint32_t) const { return Beside::nothing; }
+  /// What blocks behind `last` rely on and arcs between `first` and `last` have changed (a pole): lines to put behind.
+  virtual std::vector<std::string> lines_behind(std::uint32_t, std::uint32_t) const { return {}; }
+  /// A new line, with a block number for renumbered() where the program has them on every line.
+  virtual std::string new_line(std::string line) const { return line; }
+  /// A whole program in which lines were added and taken out, its block numbers in order.
+  virtual std::string renumbered(std::string text) const { return text; }
 
  protected:
   const Program& program_;

@@ -11,5 +11,6 @@ LanguageEvidence evidence(std::string_view text);
 Program read(SourceText source, Diagnostics& diagnostics);
 Interpretation interpret(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics);
 std::unique_ptr<TextRules> text_rules(const Program& program);
+std::unique_ptr<ProgramWriter> writer(const Dialect& dialect, WriterFormat format);
 
 }  // namespace camber::nc::heidenhain

@@ -156,8 +156,71 @@ class KlartextRules : public TextRules {
     }
     const Statement& s = tree_.statements[statement_of_[moved_]];
     moved_ = kNone;
-    std::string text = program_.source.text().substr(s.begin, s.end - s.begin);
-    return text.substr(0, text.find_first_of("\r\n;"));
+    return centre_text(s);
+  }
+
+  bool motion_is_modal() const override { return false; }
+  /// Jumps go to labels.
+  bool numbers_are_targets() const override { return false; }
+
+  /// L with absolute places, F and R0 may be written anew. Blanks alone stand between the words.
+  Beside beside(std::uint32_t block) const override {
+    const std::uint32_t index = statement_of_[block];
+    if (index == kNone) return Beside::several;
+    const Statement& s = tree_.statements[index];
+    if (s.skip != 0) return Beside::skip;
+    if (s.lines > 1) return Beside::several;
+    if (s.kind != Kind::line) return Beside::word;
+    const std::string& text = program_.source.text();
+    const auto blank = [&](std::size_t from, std::size_t to) { return text.find_first_not_of(" \t\r", from) >= to; };
+    std::size_t at = s.at;
+    for (const Word& w : tree_.words_of(program_, s)) {
+      if (!blank(at, w.offset)) return Beside::comment;
+      at = w.offset + w.length;
+      if (std::isnan(w.value)) return Beside::expression;
+      const bool place = is_axis(w.letter) && !is_incremental(program_, w);
+      if (!place && w.letter != 'F' && !(w.letter == letter::kCompensation && w.value == 0)) return Beside::word;
+    }
+    return blank(at, program_.blocks[block].offset + program_.blocks[block].length) ? Beside::nothing : Beside::comment;
+  }
+
+  /// The CC before the run, unless a new one comes before what may rely on it.
+  std::vector<std::string> lines_behind(std::uint32_t first, std::uint32_t last) const override {
+    const Statement* centre = nullptr;
+    for (const Statement& s : tree_.statements) {
+      if (s.block < first && s.kind == Kind::centre) centre = &s;
+      if (s.block <= last) continue;
+      if (s.kind == Kind::centre || s.kind == Kind::begin_program) break;
+      const bool relies = s.kind == Kind::circle || s.kind == Kind::polar_circle || s.kind == Kind::polar_line ||
+                          s.kind == Kind::polar_tangent_arc || s.kind == Kind::call_label ||
+                          s.kind == Kind::call_program || s.kind == Kind::label || s.kind == Kind::approach ||
+                          s.kind == Kind::departure;
+      if (relies && centre) return {centre_text(*centre)};
+      if (relies) break;
+    }
+    return {};
+  }
+
+  std::string new_line(std::string line) const override { return numbers_ ? with_number(line, 0) : line; }
+
+  /// One more in each line that has a number; lines that continue others have none.
+  std::string renumbered(std::string text) const override {
+    if (!numbers_) return text;
+    std::string out;
+    std::optional<long> number;
+    for (std::size_t at = 0; at < text.size();) {
+      std::size_t end = text.find(program_.source.line_end(), at);
+      end = end == std::string::npos ? text.size() : end + 1;
+      const std::string line = text.substr(at, end - at);
+      at = end;
+      if (const auto has = number_of(line)) {
+        number = number ? *number + 1 : *has;
+        out += with_other_number(line, *number);
+      } else {
+        out += line;
+      }
+    }
+    return out;
   }
 
  private:
@@ -246,6 +309,11 @@ class KlartextRules : public TextRules {
     return out;
   }
 
+  std::string centre_text(const Statement& s) const {
+    const std::string text = program_.source.text().substr(s.begin, s.end - s.begin);
+    return text.substr(0, text.find_first_of("\r\n;"));
+  }
+
   /// The block number of a line.
   std::optional<long> number_of(const std::string& line) const {
     std::size_t at = line.find_first_not_of(" \t/");
@@ -255,6 +323,13 @@ class KlartextRules : public TextRules {
     long value = 0;
     while (at < line.size() && is_digit(line[at]) && value < 100'000'000) value = 10 * value + (line[at++] - '0');
     return value;
+  }
+
+  std::string with_other_number(const std::string& line, long number) const {
+    const std::size_t from = line.find_first_of("0123456789");
+    std::size_t to = from;
+    while (to < line.size() && is_digit(line[to])) ++to;
+    return line.substr(0, from) + std::to_string(number) + line.substr(to);
   }
 
   std::string with_number(const std::string& line, long number) const {

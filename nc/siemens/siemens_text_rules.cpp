@@ -114,6 +114,12 @@ class SiemensTextRules : public LetterArcs {
 
   bool absolute_centre(const ModalState&, std::uint32_t block) const override { return centre_is_absolute(block); }
 
+  bool numbers_are_targets() const override {
+    return std::ranges::any_of(tree_of(program_).statements, [](const Statement& s) {
+      return s.flow == FlowKind::jump || s.flow == FlowKind::select || s.flow == FlowKind::repeat_part;
+    });
+  }
+
  private:
   const Statement* statement(std::uint32_t block) const { return tree_of(program_).statement(block); }
 
