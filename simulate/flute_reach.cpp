@@ -5,10 +5,13 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "base/stage.h"
+#include "machine/assumptions.h"
 #include "removal/cutter.h"
 #include "removal/engagement.h"
 #include "simulate/material_distance.h"
@@ -80,19 +83,32 @@ constexpr std::size_t kMaxLines = 10;
 class Report {
  public:
   Report(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics)
-      : job_(job), program_(program), diagnostics_(diagnostics) {}
+      : job_(job), program_(program), diagnostics_(diagnostics), assumed_(machine::assumed_keys(job.path)) {}
 
   bool full() const { return said_.size() >= kMaxLines; }
-  bool has(std::uint32_t block) const { return said_.contains(block); }
+  bool has(int number, std::uint32_t block) const { return said_.contains(block) || warned_.contains(number); }
+  /// A length that nobody gave refuses no program: it is warned of, once.
   void add(int number, std::uint32_t block, double height_mm) {
-    said_.insert(block);
     const machine::Tool& tool = job_.tools.at(number);
     const bool flutes = tool.flute_length_mm && *tool.flute_length_mm < tool.overhang_mm;
+    const char* key = flutes ? "flute_length_mm" : "overhang_mm";
+    const auto assumed = assumed_.find(fmt::format("tool.{}", number));
+    if (assumed != assumed_.end() && std::ranges::find(assumed->second, key) != assumed->second.end()) {
+      warned_.insert(number);
+      diagnostics_.add(program_.text.source.diagnostic(
+          Severity::warning, program_.text.blocks[block].offset,
+          fmt::format(
+              "T{} meets material {:.1f} mm above its tip, but {} = {:g}, which is assumed; the length that the "
+              "tool has was expected, or a stock that is cut so far",
+              number, height_mm, key, cutter_end_mm(tool)),
+          flutes ? "cut-above-flutes" : "cut-above-overhang"));
+      return;
+    }
+    said_.insert(block);
     diagnostics_.add(program_.text.source.diagnostic(
         Severity::error, program_.text.blocks[block].offset,
         fmt::format("T{} meets material {:.1f} mm above its tip, but {} = {:g}; a cut that {} was expected", number,
-                    height_mm, flutes ? "flute_length_mm" : "overhang_mm", cutter_end_mm(tool),
-                    flutes ? "its flutes reach" : "ends below the holder"),
+                    height_mm, key, cutter_end_mm(tool), flutes ? "its flutes reach" : "ends below the holder"),
         flutes ? "cut-above-flutes" : "cut-above-overhang"));
   }
 
@@ -100,7 +116,9 @@ class Report {
   const machine::Job& job_;
   const SimulatedProgram& program_;
   Diagnostics& diagnostics_;
-  std::set<std::uint32_t> said_;
+  std::map<std::string, std::vector<std::string>> assumed_;
+  std::set<std::uint32_t> said_;  ///< blocks
+  std::set<int> warned_;          ///< tools
 };
 
 class UprightSearch {
@@ -167,7 +185,7 @@ class UprightSearch {
     const removal::Stock::Probe probe(stock);
     for_places(cylinder, from, to, [&](std::size_t k, const Vec3& tip) {
       const std::uint32_t block = program_.moves.moves[program_.path.stamps[k].move].block;
-      if (report_.has(block)) return true;
+      if (report_.has(tool, block)) return true;
       if (const auto height = cylinder.meets(probe, tip)) report_.add(tool, block, *height);
       return !report_.full();
     });
@@ -236,7 +254,8 @@ class TiltedSearch {
 
   void look_at(int tool, std::size_t k, const ToolPose& pose, SurfaceFeeler& feeler, SweptStock& stock) {
     const std::uint32_t block = program_.moves.moves[program_.path.stamps[k].move].block;
-    if (report_.has(block) || !cylinders_.at(tool).may_touch(pose, false, blank_.min_mm(), blank_.max_mm())) return;
+    if (report_.has(tool, block) || !cylinders_.at(tool).may_touch(pose, false, blank_.min_mm(), blank_.max_mm()))
+      return;
     bool some_cleared = false;
     const auto touch = feeler.touch(stock.probe(), pose, false, [&](const Vec3& point) {
       const bool cleared = stock.cleared(point, k);
@@ -264,7 +283,8 @@ void report_above_flutes(const machine::Job& job, const SimulatedProgram& progra
   for (const CutAboveFlutes& cut : found) {
     const nc::Move& m = program.moves.moves[cut.move];
     if (report.full()) return;
-    if (!report.has(m.block)) report.add(program.moves.state_of(m).tool, m.block, cut.above_tip_mm);
+    const int tool = program.moves.state_of(m).tool;
+    if (!report.has(tool, m.block)) report.add(tool, m.block, cut.above_tip_mm);
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Writes a program from nothing in the words of a control: what copy milling, rasters and protocols emit. Given programs
-// are changed by nc/emit.h instead.
+// Writes a program from nothing in the words of a control: what copy milling, rasters and protocols emit. Given
+// programs are changed by nc/emit.h instead.
 #include <cstddef>
 #include <memory>
 #include <optional>

@@ -50,12 +50,14 @@ TEST(CompressKlartext, APoleSetBeforeTheRunIsSetAgainBehindIt) {
   const std::string text =
       head + "4 CC X-4.161 Y+19.093\n" + klartext_arc(5, 60) + "65 C X-14.161 Y+19.093 DR-\n66 END PGM A MM\n";
   EXPECT_EQ(read_and_compressed(text),
-            head + "4 CC X-4.161 Y+19.093\n5 CC X+0.000 Y+0.000\n6 C X-4.161 Y+9.093 DR+\n7 CC X-4.161 Y+19.093\n"
-                   "8 C X-14.161 Y+19.093 DR-\n9 END PGM A MM\n");
+            head +
+                "4 CC X-4.161 Y+19.093\n5 CC X+0.000 Y+0.000\n6 C X-4.161 Y+9.093 DR+\n7 CC X-4.161 Y+19.093\n"
+                "8 C X-14.161 Y+19.093 DR-\n9 END PGM A MM\n");
 }
 
 TEST(CompressKlartext, MFunctionsCommentsAndSkippedBlocksEndARun) {
-  for (const char* middle : {"L M8\n", "; note\n", "/L X+10 Y+0\n", "LBL 3\n", "L IX+0.5\n", "CYCL DEF 32.0 TOLERANCE\n"}) {
+  for (const char* middle :
+       {"L M8\n", "; note\n", "/L X+10 Y+0\n", "LBL 3\n", "L IX+0.5\n", "CYCL DEF 32.0 TOLERANCE\n"}) {
     SCOPED_TRACE(middle);
     const std::string head = "BEGIN PGM A MM\nTOOL CALL 1 Z S5000\nL X+10 Y+0 Z+0 R0 FMAX M3\nL Z-1 F500\n";
     std::string lines[2];
