@@ -324,7 +324,7 @@ TEST(Siemens, HolesStayWhereTheyAreBehindAnEdit) {
 }
 
 TEST(Siemens, EveryWordStandsInThePage) {
-  std::ifstream in(CAMBER_SOURCE_DIR "/docs/nc-language-siemens.md");
+  std::ifstream in(CAMBER_SOURCE_DIR "/docs/reference/nc-language-siemens.md");
   std::set<std::string> documented, known;
   bool words = false;
   for (std::string line; std::getline(in, line);) {
