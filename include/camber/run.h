@@ -18,7 +18,7 @@ struct RunOptions {
   int threads = 0;         ///< 0: all processors. Results do not depend on it
 };
 
-/// "0.2.0".
+/// "0.3.0".
 CAMBER_API const char* version();
 
 }  // namespace v0

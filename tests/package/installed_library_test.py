@@ -109,7 +109,7 @@ class Installed(unittest.TestCase):
         project.mkdir()
         (project / "CMakeLists.txt").write_text(
             "cmake_minimum_required(VERSION 3.25)\nproject(reader LANGUAGES CXX)\n"
-            "find_package(camber 0.3 CONFIG QUIET)\nif(camber_FOUND)\n  message(FATAL_ERROR found)\nendif()\n")
+            "find_package(camber 0.4 CONFIG QUIET)\nif(camber_FOUND)\n  message(FATAL_ERROR found)\nendif()\n")
         run("cmake", "-S", project, "-B", project / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
     def test_the_python_module_comes_with_it(self):
