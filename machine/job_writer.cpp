@@ -121,7 +121,8 @@ std::string to_toml(const Job& job) {
     out += toml_line("collisions", kCollisionsWords[static_cast<std::size_t>(*job.simulation.collisions)]);
   if (job.simulation.max_memory_GB) out += toml_line("max_memory_GB", *job.simulation.max_memory_GB, kAsIs);
   out += compensation_text(job.compensation);
-  return job.adapt ? out + adapt_text(*job.adapt) : out;
+  if (job.adapt) out += adapt_text(*job.adapt);
+  return out + features_text(job.features, job.model_error);
 }
 
 }  // namespace camber::machine
