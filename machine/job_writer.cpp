@@ -5,6 +5,7 @@
 #include "machine/assumptions.h"
 #include "machine/job_keys.h"
 #include "machine/material_reader.h"
+#include "machine/tool_reader.h"
 
 namespace camber::machine {
 namespace {
@@ -106,6 +107,8 @@ std::string adapt_text(const AdaptSettings& a) {
 }
 
 }  // namespace
+
+std::string tool_toml(const Tool& tool) { return tool_text(tool, {}); }
 
 std::string to_toml(const Job& job) {
   const AssumedKeys assumed = assumed_keys(job.path);
