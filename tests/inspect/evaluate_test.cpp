@@ -37,8 +37,8 @@ void add_hole(std::vector<SurfacePoint>& points, const Vec3& top, double radius,
 /// A flat face from `corner` along u and v, with the error by the place on it.
 void add_face(std::vector<SurfacePoint>& points, const Vec3& corner, const Vec3& u, const Vec3& v,
               const std::function<double(double, double)>& error_mm) {
-  for (double a = 0; a <= u.norm(); a += kVoxel_mm)
-    for (double b = 0; b <= v.norm(); b += kVoxel_mm) {
+  for (double a = 0; a <= u.norm() + 1e-9; a += kVoxel_mm)
+    for (double b = 0; b <= v.norm() + 1e-9; b += kVoxel_mm) {
       SurfacePoint p;
       p.place_mm = corner + a * u.normalized() + b * v.normalized();
       p.normal = Vec3(u.normalized().y() * v.normalized().z() - u.normalized().z() * v.normalized().y(),
@@ -200,7 +200,7 @@ TEST(Evaluate, CsvHasTheColumnsAndLeavesOutWhatIsNotKnown) {
   std::vector<FeatureResult> results(2);
   results[0].feature = "bore, top";
   results[0].nominal_mm = 4;
-  results[0].predicted_mm = 4.0012345;
+  results[0].predicted_mm = 4.0012346;
   results[0].std_mm = 0.0015;
   results[0].measured_mm = 4.003;
   results[0].lower_mm = 3.99;
@@ -211,7 +211,7 @@ TEST(Evaluate, CsvHasTheColumnsAndLeavesOutWhatIsNotKnown) {
   EXPECT_EQ(features_csv(results),
             "feature,kind,nominal_mm,predicted_mm,std_mm,measured_mm,difference_um,form_um,taper_um,lower_mm,upper_mm,"
             "within\n"
-            "\"bore, top\",bore,4.000000,4.001235,0.001500,4.003000,1.766,,,3.990000,4.010000,1\n"
+            "\"bore, top\",bore,4.000000,4.001235,0.001500,4.003000,1.765,,,3.990000,4.010000,1\n"
             "wall,wall,2.000000,,,,,,,,,\n");
 }
 

@@ -116,11 +116,13 @@ TEST(MeasuredCsv, BadTablesSayWhatWasExpected) {
             "m.csv:1:1: error: is empty; a header that names the columns was expected [measured-table]");
   EXPECT_EQ(csv_message("name,value\nA,1\n"),
             "m.csv:1:1: error: the header has no column \"feature\"; it has name, value [measured-table]\n"
-            "name,value\n^");
+            "    name,value\n    ^\n");
   EXPECT_EQ(csv_message("feature,value_mm\nA,four\n"),
-            "m.csv:2:3: error: value_mm is \"four\"; a number was expected [measured-table]\nA,four\n  ^");
+            "m.csv:2:3: error: value_mm is \"four\"; a number was expected [measured-table]\n"
+            "    A,four\n      ^\n");
   EXPECT_EQ(csv_message("feature,value_mm\n,4\n"),
-            "m.csv:2:1: error: the row has a value and no feature; a name was expected [measured-table]\n,4\n^");
+            "m.csv:2:1: error: the row has a value and no feature; a name was expected [measured-table]\n"
+            "    ,4\n    ^\n");
 }
 
 }  // namespace
