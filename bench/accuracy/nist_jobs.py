@@ -54,8 +54,8 @@ def measured():
     return out
 
 
-def program(row):
-    """The text of plate 1 with the speeds and feeds of another one."""
+def program(row, group=None):
+    """The text of plate 1 with the speeds and feeds of another one. Of a group its own lines, with their numbers."""
     with lzma.open(os.path.join(DATA, "plate_01.nc.xz"), "rt", encoding="latin1", newline="") as file:
         lines = file.read().split("\n")
     tool = None
@@ -68,6 +68,11 @@ def program(row):
         line = re.sub(r"S\d+M3", "S%sM3" % row["spindle_rpm"], line)
         feed = row["T%d_F" % tool if tool != 5 else "T5_F_in_per_min"]
         lines[i] = re.sub(r"F[\d.]+", "F%s." % feed, line)
+    if group:
+        own, (first, last), _ = GROUPS[group]
+        change = next(i for i, line in enumerate(lines) if "T%dM6" % own in line)
+        keep = set(range(0, 11)) | set(range(change, change + 5)) | set(range(first - 2, last))
+        lines = [line if i in keep or "M30" in line or line.startswith("%") else "" for i, line in enumerate(lines)]
     return "\n".join(lines)
 
 
@@ -150,7 +155,7 @@ def write_jobs(folder, plates, groups=None, overrides=None):
             own = os.path.join(folder, "%02d-%s" % (plate, group))
             os.makedirs(own, exist_ok=True)
             with open(os.path.join(own, "plate.nc"), "w", encoding="latin1", newline="") as file:
-                file.write(program(rows[plate]))
+                file.write(program(rows[plate], group))
             with open(os.path.join(own, "job.toml"), "w", encoding="utf8") as file:
                 file.write(job(plate, group, rows[plate], values, overrides or {}))
             out.append(os.path.join(own, "job.toml"))
