@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <map>
 
+#include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <fmt/format.h>
 
 #include "calib/parts_unknowns.h"
 #include "inspect/evaluate.h"
@@ -33,9 +33,9 @@ constexpr double kDetermined = 0.5;      // greatest standard error of a logarit
 constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day
 constexpr double kNoise_mm = 0.002;      // of a measured size, before anything is known of it
 constexpr double kLeastNoise_mm = 0.0002;
-constexpr double kHuber = 2.5;           // standard deviations: normal noise stays least squares
-constexpr double kAtRest = 0.05;         // of a standard error
-constexpr double kAlike = 0.9;           // cosine between two columns that cannot be told apart
+constexpr double kHuber = 2.5;    // standard deviations: normal noise stays least squares
+constexpr double kAtRest = 0.05;  // of a standard error
+constexpr double kAlike = 0.9;    // cosine between two columns that cannot be told apart
 
 /// Robust linear least squares by Ceres: residual (row . x - b) / sigma.
 class LinearRow final : public ceres::CostFunction {
@@ -147,8 +147,8 @@ class Fit {
         if (!rows_[i].held_out) fitted_.push_back(i);
         continue;
       }
-      const std::string text = fmt::format("{}: {}", job_name(jobs_[rows_[i].job]),
-                                           jobs_[rows_[i].job].features[rows_[i].feature].name);
+      const std::string text =
+          fmt::format("{}: {}", job_name(jobs_[rows_[i].job]), jobs_[rows_[i].job].features[rows_[i].feature].name);
       if (std::ranges::find(out_.left_out, text) == out_.left_out.end()) out_.left_out.push_back(text);
     }
   }
@@ -171,14 +171,16 @@ class Fit {
         x[column] += kStep;
         const Sizes there = predict(j, x);
         for (std::size_t f = 0; f < there.size(); ++f)
-          if (there[f] && sizes_[j][f]) slope_[j](static_cast<Eigen::Index>(f), column) = (*there[f] - *sizes_[j][f]) / kStep;
+          if (there[f] && sizes_[j][f])
+            slope_[j](static_cast<Eigen::Index>(f), column) = (*there[f] - *sizes_[j][f]) / kStep;
       }
     }
   }
 
   double slope_of(const PartsRow& row, std::size_t k) const {
     const PartsUnknown& u = unknowns_[k];
-    if (u.kind == UnknownKind::offset) return row.clamping == u.clamping && row.tool == u.tool ? row.size_per_diameter : 0;
+    if (u.kind == UnknownKind::offset)
+      return row.clamping == u.clamping && row.tool == u.tool ? row.size_per_diameter : 0;
     if (u.kind == UnknownKind::drift) return row.day.value_or(0);
     return slope_[row.job](static_cast<Eigen::Index>(row.feature), static_cast<Eigen::Index>(k));
   }
@@ -278,8 +280,8 @@ class Fit {
     for (double& v : sizes) v = std::abs(v);
     std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
     const double dof = std::max<double>(1, static_cast<double>(r.size() - static_cast<Eigen::Index>(active().size())));
-    const double bound = std::max(kLeastNoise_mm, kHuber * 1.4826 * sizes[sizes.size() / 2] *
-                                                      std::sqrt(static_cast<double>(r.size()) / dof));
+    const double bound = std::max(
+        kLeastNoise_mm, kHuber * 1.4826 * sizes[sizes.size() / 2] * std::sqrt(static_cast<double>(r.size()) / dof));
     return std::max(kLeastNoise_mm, std::sqrt(r.cwiseAbs().cwiseMin(bound).squaredNorm() / dof));
   }
 
@@ -313,7 +315,8 @@ class Fit {
   /// Moves to x + dx; real predictions there correct the slopes.
   void take_step(const std::vector<std::size_t>& ks, const VectorXd& step) {
     VectorXd dx = VectorXd::Zero(size());
-    for (std::size_t i = 0; i < ks.size(); ++i) dx[static_cast<Eigen::Index>(ks[i])] = step[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < ks.size(); ++i)
+      dx[static_cast<Eigen::Index>(ks[i])] = step[static_cast<Eigen::Index>(i)];
     x_ += dx;
     VectorXd of_model = dx;
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
@@ -329,7 +332,8 @@ class Fit {
       for (std::size_t f = 0; f < there.size(); ++f) {
         if (!there[f] || !sizes_[j][f]) continue;  // keeps its last prediction
         auto row = slope_[j].row(static_cast<Eigen::Index>(f));
-        if (own.squaredNorm() > 1e-8) row += (*there[f] - *sizes_[j][f] - row.dot(own)) / own.squaredNorm() * own.transpose();
+        if (own.squaredNorm() > 1e-8)
+          row += (*there[f] - *sizes_[j][f] - row.dot(own)) / own.squaredNorm() * own.transpose();
         sizes_[j][f] = there[f];
       }
     }
@@ -390,11 +394,16 @@ class Fit {
       const auto [at, fresh] = conditions.try_emplace({row.job, row.tool});
       if (fresh && row.tool != 0) at->second = feed_and_speed(job, row.tool);
       const auto tool = job.tools.find(row.tool);
-      out_.residuals.push_back({.job = job_name(job), .feature = job.features[row.feature].name, .part = row.part,
-                                .tool = row.tool, .measured_mm = row.measured_mm, .predicted_mm = predicted(row),
+      out_.residuals.push_back({.job = job_name(job),
+                                .feature = job.features[row.feature].name,
+                                .part = row.part,
+                                .tool = row.tool,
+                                .measured_mm = row.measured_mm,
+                                .predicted_mm = predicted(row),
                                 .feed_mm_per_min = at->second.first,
                                 .overhang_mm = tool == job.tools.end() ? 0 : tool->second.overhang_mm,
-                                .spindle_rpm = at->second.second, .held_out = row.held_out});
+                                .spindle_rpm = at->second.second,
+                                .held_out = row.held_out});
     }
   }
 
@@ -457,7 +466,8 @@ class Fit {
       std::string note = notes_[k];
       if (t.std_error && std_of.contains(r)) {
         const double both = covariance_(index_.at(k), index_.at(r));
-        const double var = std_of.at(k) * std_of.at(k) + 0.25 * std_of.at(r) * std_of.at(r) + (axis == 0 ? 1 : -1) * both;
+        const double var =
+            std_of.at(k) * std_of.at(k) + 0.25 * std_of.at(r) * std_of.at(r) + (axis == 0 ? 1 : -1) * both;
         t.std_error = t.value * std::sqrt(std::max(0.0, var));
       } else if (t.std_error) {
         note = "X and Y together: their ratio is not determined";
@@ -525,9 +535,9 @@ class Fit {
       }
       for (std::size_t i = 0; i < ks.size(); ++i)
         for (std::size_t j = i + 1; j < ks.size(); ++j)
-          out_.correlations.push_back(
-              {unknowns_[ks[i]].name, unknowns_[ks[j]].name,
-               covariance_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) / (std_of[ks[i]] * std_of[ks[j]])});
+          out_.correlations.push_back({unknowns_[ks[i]].name, unknowns_[ks[j]].name,
+                                       covariance_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) /
+                                           (std_of[ks[i]] * std_of[ks[j]])});
     }
     for (std::size_t k = 0; k < unknowns_.size(); ++k) add_parameter(k, std_of);
     add_model_error(std_of);
@@ -592,10 +602,13 @@ std::vector<std::optional<double>> predict_features(const Job& job) {
   const simulate::Setup setup = simulate::set_up(job, {}, {found, found, found});
   const simulate::Prediction p = simulate::predict_surface(job, setup.target, setup.program, {}, "");
   std::vector<std::optional<double>> out;
-  for (const auto& r : inspect::evaluate(job.features, p.surface, job.simulation.voxel_mm)) out.push_back(r.predicted_mm);
+  for (const auto& r : inspect::evaluate(job.features, p.surface, job.simulation.voxel_mm))
+    out.push_back(r.predicted_mm);
   return out;
 }
 
-FitPartsResult fit_parts(const std::vector<Job>& jobs, const FitPartsOptions& options) { return Fit(jobs, options).run(); }
+FitPartsResult fit_parts(const std::vector<Job>& jobs, const FitPartsOptions& options) {
+  return Fit(jobs, options).run();
+}
 
 }  // namespace camber::calib

@@ -25,9 +25,9 @@ struct FitPartsOptions {
 struct PartsParameter {
   std::string name;  ///< key of machine.toml, "tool.5.KEY", "force_scale", "edge_scale", "offset.T5/short", "drift"
   std::string unit;
-  double value = 0;                ///< in the unit of the file
+  double value = 0;  ///< in the unit of the file
   double start = 0;
-  std::optional<double> std_error; ///< not given: not determined, and `value` is the start
+  std::optional<double> std_error;  ///< not given: not determined, and `value` is the start
   std::string note;
 };
 
@@ -40,7 +40,7 @@ struct Correlation {
 struct PartsResidual {
   std::string job, feature, part;
   int tool = 0;
-  double measured_mm = 0, predicted_mm = 0;  ///< with offsets
+  double measured_mm = 0, predicted_mm = 0;                      ///< with offsets
   double feed_mm_per_min = 0, overhang_mm = 0, spindle_rpm = 0;  ///< of the tool in that job
   bool held_out = false;
   double residual_um() const { return 1000 * (measured_mm - predicted_mm); }
@@ -53,16 +53,16 @@ struct PartsGroup {
 };
 
 struct FitPartsResult {
-  std::vector<machine::Job> jobs;          ///< with the fitted numbers
+  std::vector<machine::Job> jobs;  ///< with the fitted numbers
   std::vector<PartsParameter> parameters;
-  std::vector<Correlation> correlations;   ///< of all pairs of determined parameters
-  std::vector<std::string> confounded;     ///< sentences: what cannot be told apart, and why
-  std::vector<std::string> suggestions;    ///< experiments that would tell it
+  std::vector<Correlation> correlations;  ///< of all pairs of determined parameters
+  std::vector<std::string> confounded;    ///< sentences: what cannot be told apart, and why
+  std::vector<std::string> suggestions;   ///< experiments that would tell it
   std::vector<PartsResidual> residuals;
-  std::vector<PartsGroup> groups;          ///< by feature and tool
-  std::vector<std::string> left_out;       ///< measured features without a prediction, with the reason
-  double rms_um = 0;                       ///< of what was fitted
-  machine::ModelError error;               ///< what the fit leaves uncertain, for [model_error]
+  std::vector<PartsGroup> groups;     ///< by feature and tool
+  std::vector<std::string> left_out;  ///< measured features without a prediction, with the reason
+  double rms_um = 0;                  ///< of what was fitted
+  machine::ModelError error;          ///< what the fit leaves uncertain, for [model_error]
   int rounds = 0;
   std::size_t predictions = 0;
   bool converged = false;

@@ -46,7 +46,8 @@ void scale_gain(Job& job, int axis, double factor) {
 }
 
 bool has_gains(const Job& job) {
-  return std::isfinite(job.machine.axis[0].position_gain_per_s) && std::isfinite(job.machine.axis[1].position_gain_per_s);
+  return std::isfinite(job.machine.axis[0].position_gain_per_s) &&
+         std::isfinite(job.machine.axis[1].position_gain_per_s);
 }
 
 void scale_coefficients(Job& job, double factor, bool edges_alone) {
@@ -78,8 +79,11 @@ void add_offsets(const std::vector<Job>& jobs, const std::vector<PartsRow>& rows
     }
   for (const auto& [clamping, overhang] : names) {
     const int tool = tools.at(clamping);
-    PartsUnknown u{.kind = UnknownKind::offset, .name = fmt::format("tool.{}.diameter_mm", tool), .tool = tool,
-                   .clamping = clamping, .of_job = {}};
+    PartsUnknown u{.kind = UnknownKind::offset,
+                   .name = fmt::format("tool.{}.diameter_mm", tool),
+                   .tool = tool,
+                   .clamping = clamping,
+                   .of_job = {}};
     u.of_job = jobs_where(jobs, [&, clamping = clamping](const Job& job) {
       return job.tools.contains(tool) && clampings.at(clamping_key(job.tools.at(tool))) == clamping;
     });
@@ -97,8 +101,8 @@ void add_stiffness(const std::vector<Job>& jobs, bool rotational, std::vector<Pa
     double Tool::*const field =
         rotational ? &Tool::root_rotational_stiffness_Nmm_per_rad : &Tool::root_stiffness_N_per_mm;
     PartsUnknown u{.kind = rotational ? UnknownKind::root_rotation : UnknownKind::root,
-                   .name = fmt::format("tool.{}.{}", number, rotational ? "root_rotational_stiffness_Nm_per_rad"
-                                                                        : "root_stiffness_N_per_um"),
+                   .name = fmt::format("tool.{}.{}", number,
+                                       rotational ? "root_rotational_stiffness_Nm_per_rad" : "root_stiffness_N_per_um"),
                    .tool = number,
                    .of_job = jobs_where(jobs, [&](const Job& job) {
                      return job.tools.contains(number) && std::isfinite(job.tools.at(number).*field);
@@ -139,9 +143,14 @@ std::vector<PartsRow> rows_of(const std::vector<Job>& jobs, const std::vector<st
       const int tool = tool_of(jobs[j], feature);
       const auto found = jobs[j].tools.find(tool);
       for (const machine::MeasuredValue& v : feature.measured) {
-        PartsRow row{.job = j, .feature = f, .part = v.part, .tool = found == jobs[j].tools.end() ? 0 : tool,
-                     .measured_mm = v.value_mm, .size_per_diameter = feature.size_per_diameter(),
-                     .day = days_of(v.date), .held_out = held_out(jobs[j], v.part, hold_out)};
+        PartsRow row{.job = j,
+                     .feature = f,
+                     .part = v.part,
+                     .tool = found == jobs[j].tools.end() ? 0 : tool,
+                     .measured_mm = v.value_mm,
+                     .size_per_diameter = feature.size_per_diameter(),
+                     .day = days_of(v.date),
+                     .held_out = held_out(jobs[j], v.part, hold_out)};
         if (row.tool != 0) row.clamping = clampings.at(clamping_key(found->second));
         if (row.day && (!first || *row.day < *first)) first = row.day;
         out.push_back(std::move(row));
@@ -157,22 +166,24 @@ std::vector<PartsUnknown> unknowns_of(const std::vector<Job>& jobs, const std::v
   add_offsets(jobs, rows, out);
   const std::vector<bool> gains = jobs_where(jobs, has_gains), all = jobs_where(jobs, always);
   if (any(gains))
-    out.push_back({.kind = UnknownKind::gain, .name = "position_gain_per_s", .of_job = gains,
-                   .apply = [](Job& job, double x) {
-                     for (const int axis : {0, 1}) scale_gain(job, axis, std::exp(x));
-                   }});
-  out.push_back({.kind = UnknownKind::force, .name = "force_scale", .of_job = all,
-                 .apply = [](Job& job, double x) { scale_coefficients(job, std::exp(x), false); }});
+    out.push_back(
+        {.kind = UnknownKind::gain, .name = "position_gain_per_s", .of_job = gains, .apply = [](Job& job, double x) {
+           for (const int axis : {0, 1}) scale_gain(job, axis, std::exp(x));
+         }});
+  out.push_back({.kind = UnknownKind::force, .name = "force_scale", .of_job = all, .apply = [](Job& job, double x) {
+                   scale_coefficients(job, std::exp(x), false);
+                 }});
   add_stiffness(jobs, false, out);
   if (const auto edges = jobs_where(jobs, has_edges); any(edges))
-    out.push_back({.kind = UnknownKind::edge, .name = "edge_scale", .of_job = edges,
-                   .apply = [](Job& job, double x) { scale_coefficients(job, std::exp(x), true); }});
-  if (any(gains))
-    out.push_back({.kind = UnknownKind::gain_ratio, .name = "gain of X over Y", .of_job = gains,
-                   .apply = [](Job& job, double x) {
-                     scale_gain(job, 0, std::exp(x / 2));
-                     scale_gain(job, 1, std::exp(-x / 2));
+    out.push_back({.kind = UnknownKind::edge, .name = "edge_scale", .of_job = edges, .apply = [](Job& job, double x) {
+                     scale_coefficients(job, std::exp(x), true);
                    }});
+  if (any(gains))
+    out.push_back(
+        {.kind = UnknownKind::gain_ratio, .name = "gain of X over Y", .of_job = gains, .apply = [](Job& job, double x) {
+           scale_gain(job, 0, std::exp(x / 2));
+           scale_gain(job, 1, std::exp(-x / 2));
+         }});
   add_stiffness(jobs, true, out);
   const bool dated = std::ranges::any_of(rows, [](const PartsRow& r) { return r.day && *r.day > 0; });
   if (dated) out.push_back({.kind = UnknownKind::drift, .name = "drift", .of_job = {}});
@@ -191,11 +202,13 @@ std::string suggestion_for(const PartsUnknown& u, const PartsUnknown* other) {
     case UnknownKind::force:
       return fmt::format("{}{}: one slot or bore at three feeds with a long tool, in one clamping", u.name, from);
     case UnknownKind::edge:
-      return fmt::format("edge and cutting forces apart: feeds per tooth over a range of three or more with a long tool");
+      return fmt::format(
+          "edge and cutting forces apart: feeds per tooth over a range of three or more with a long tool");
     case UnknownKind::root:
-      return fmt::format("{}{}: the same feature with a short and a long stick-out, the short one with a heavy cut of a "
-                         "thick tool",
-                         u.name, from);
+      return fmt::format(
+          "{}{}: the same feature with a short and a long stick-out, the short one with a heavy cut of a "
+          "thick tool",
+          u.name, from);
     case UnknownKind::root_rotation:
       return fmt::format("{}{}: three stick-outs of one tool", u.name, from);
     case UnknownKind::drift:

@@ -16,8 +16,8 @@ struct PartsUnknown {
   UnknownKind kind = UnknownKind::force;
   std::string name;  ///< of offsets, stiffness: with the tool
   int tool = 0;
-  std::size_t clamping = 0;              ///< offset: which
-  std::vector<bool> of_job;              ///< whether it changes that job's sizes
+  std::size_t clamping = 0;                              ///< offset: which
+  std::vector<bool> of_job;                              ///< whether it changes that job's sizes
   std::function<void(machine::Job&, double x)> apply{};  ///< not of drift
   bool adds() const { return kind == UnknownKind::offset || kind == UnknownKind::drift; }
 };

@@ -10,22 +10,22 @@ namespace camber::calib {
 namespace {
 
 constexpr std::array kFeedsPerTooth{1.0 / 300, 1.0 / 150, 1.0 / 75};  // of the diameter
-constexpr std::array kOverhang{3.0, 6.0};                               // of the diameter
+constexpr std::array kOverhang{3.0, 6.0};                             // of the diameter
 constexpr std::array<const char*, 2> kLength{"short", "long"};
 
 /// A cell of the block: one tool at one feed. Lengths in diameters, from the cell's corner.
 constexpr double kCellX = 5.5, kCellY = 8.5, kEdge = 0.3;
 constexpr double kBoreX = 1.4, kBoreY = 1.4;
-constexpr double kSlotXY = 4, kSlotXFrom = 1.2, kSlotXTo = 4.2;          // along X at this Y
-constexpr double kSlotYX = 4.2, kSlotYFrom = 5.4, kSlotYTo = 7.6;        // along Y at this X
-constexpr double kDepth = 0.5, kAllowance = 1.0 / 30, kWiden = 0.1;      // walls stand off the middle line by this
+constexpr double kSlotXY = 4, kSlotXFrom = 1.2, kSlotXTo = 4.2;      // along X at this Y
+constexpr double kSlotYX = 4.2, kSlotYFrom = 5.4, kSlotYTo = 7.6;    // along Y at this X
+constexpr double kDepth = 0.5, kAllowance = 1.0 / 30, kWiden = 0.1;  // walls stand off the middle line by this
 
 class Program {
  public:
   explicit Program(const TestPieceOptions& options) : d_(options.diameter_mm), options_(options) {
     text_ = "%\n(TEST PIECE FOR CAMBER FIT-PARTS)\n(BLOCK";
-    text_ += fmt::format(" {:.0f} X {:.0f} X {:.0f} MM, ITS UPPER CORNER AT X0 Y0 Z0)\n", 3 * kCellX * d_ + 2 * kEdge * d_,
-                         2 * kCellY * d_ + 2 * kEdge * d_, 2 * d_);
+    text_ += fmt::format(" {:.0f} X {:.0f} X {:.0f} MM, ITS UPPER CORNER AT X0 Y0 Z0)\n",
+                         3 * kCellX * d_ + 2 * kEdge * d_, 2 * kCellY * d_ + 2 * kEdge * d_, 2 * d_);
     text_ += "G21 G17 G40 G49 G80 G90\n";
   }
 
@@ -75,7 +75,8 @@ class Program {
     constexpr int kPasses = 6;
     add(fmt::format("G0 X{:.4f} Y{:.4f}\nG0 Z1.\nG1 Z0. F{:.1f}\n", ax, ay, feed));
     for (int i = 1; i <= kPasses; ++i)
-      add(fmt::format("G1 X{:.4f} Y{:.4f} Z{:.4f}\n", i % 2 == 1 ? bx : ax, i % 2 == 1 ? by : ay, -depth * i / kPasses));
+      add(fmt::format("G1 X{:.4f} Y{:.4f} Z{:.4f}\n", i % 2 == 1 ? bx : ax, i % 2 == 1 ? by : ay,
+                      -depth * i / kPasses));
     add(fmt::format("G1 X{:.4f} Y{:.4f}\nG1 X{:.4f} Y{:.4f}\n", bx, by, ax, ay));
     for (const double off : {rough, w}) {
       const double ox = along_x ? 0 : off, oy = along_x ? -off : 0;
@@ -114,10 +115,14 @@ std::vector<Entry> features_of(const Program& program, int tool, int feed, doubl
       fmt::format("{} F{:.0f}", kLength[static_cast<std::size_t>(tool)], program.feed_mm_per_min(feed));
   const double bx = x + kBoreX * d, by = y + kBoreY * d, width = d + 2 * kWiden * d;
   return {{"bore " + which, "bore", {bx, by, bx, by}, 2 * d},
-          {"slot x " + which, "slot_width",
-           {x + kSlotXFrom * d, y + kSlotXY * d, x + kSlotXTo * d, y + kSlotXY * d}, width},
-          {"slot y " + which, "slot_width",
-           {x + kSlotYX * d, y + kSlotYFrom * d, x + kSlotYX * d, y + kSlotYTo * d}, width}};
+          {"slot x " + which,
+           "slot_width",
+           {x + kSlotXFrom * d, y + kSlotXY * d, x + kSlotXTo * d, y + kSlotXY * d},
+           width},
+          {"slot y " + which,
+           "slot_width",
+           {x + kSlotYX * d, y + kSlotYFrom * d, x + kSlotYX * d, y + kSlotYTo * d},
+           width}};
 }
 
 std::string feature_toml(const Entry& e, int tool, double depth) {
@@ -143,8 +148,9 @@ std::vector<TestPieceFile> test_piece(const std::string& machine_path, const Tes
   job += "\n[material]                      # what the block is made of (docs/materials.md)\npreset = \"6061\"\n";
   job += fmt::format("\n[stock]\nbox_mm = [[0, 0, {:g}], [{:g}, {:g}, 0]]\n\n[simulation]\nvoxel_mm = {:g}\n", -2 * d,
                      (3 * kCellX + 2 * kEdge) * d, (2 * kCellY + 2 * kEdge) * d, d / 40);
-  std::string table = "# value_mm: what the measuring machine says, half way down; one line for each part and feature\n"
-                      "feature,part,date,value_mm\n";
+  std::string table =
+      "# value_mm: what the measuring machine says, half way down; one line for each part and feature\n"
+      "feature,part,date,value_mm\n";
   for (int tool = 0; tool < 2; ++tool)
     for (int feed = 0; feed < 3; ++feed)
       for (const Entry& e : features_of(program, tool, feed, d)) {

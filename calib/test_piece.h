@@ -20,8 +20,8 @@ struct TestPieceFile {
 /// test_piece.nc, job.toml, measured.csv (to be filled in). `machine_path`: as the job names it.
 ///
 /// One end mill in two clamping lengths, T1 short (three diameters) and T2 long (six). For each, at feeds per tooth of
-/// D/300, D/150 and D/75: a bore of path radius D/2 (its size: lag, tool), a slot along X and one along Y (widths: force
-/// and bending, the two axes apart; the finishing cuts take D/30 of each wall). Between the feeds of one tool the
+/// D/300, D/150 and D/75: a bore of path radius D/2 (its size: lag, tool), a slot along X and one along Y (widths:
+/// force and bending, the two axes apart; the finishing cuts take D/30 of each wall). Between the feeds of one tool the
 /// tool's diameter and the measuring machine cancel; between the tools the bending of the root and of the tool differ.
 /// The block is 17 D by 18 D by 2 D, its top at Z0, its corner at X0 Y0.
 std::vector<TestPieceFile> test_piece(const std::string& machine_path, const TestPieceOptions& options);

@@ -37,8 +37,9 @@ void check_hold_out(const std::vector<machine::Job>& jobs, const std::vector<std
         for (const machine::MeasuredValue& v : f.measured) known = known || v.part == name;
     }
     if (!known)
-      fail_on_file("--hold-out " + name, "no job and no measured part has this name; the name of a job's file without "
-                                         "folder and ending, or of a part, was expected",
+      fail_on_file("--hold-out " + name,
+                   "no job and no measured part has this name; the name of a job's file without "
+                   "folder and ending, or of a part, was expected",
                    "hold-out");
   }
 }
@@ -55,15 +56,15 @@ void write_results(const FitPartsArguments& arguments, const calib::FitPartsResu
   const machine::Job& first = result.jobs.front();
   write_file(folder / "machine.toml",
              head + report::parameter_comments(result, of_machine) + machine::to_toml(first.machine));
-  write_file(folder / "tools.toml", head + report::parameter_comments(result, of_tools) +
-                                        fmt::format("# For the job, what the fit leaves uncertain:\n# [model_error]\n"
-                                                    "# deflection_percent = {:.3g}\n# contour_percent = {:.3g}\n"
-                                                    "# size_um = {:.3g}\n",
-                                                    100 * result.error.deflection, 100 * result.error.contour,
-                                                    1000 * result.error.size_mm) +
-                                        report::fitted_tools_toml(result));
-  write_file(folder / "material.toml",
-             head + report::parameter_comments(result, of_material) + "[material]\n" + machine::material_text(first.material));
+  write_file(folder / "tools.toml",
+             head + report::parameter_comments(result, of_tools) +
+                 fmt::format("# For the job, what the fit leaves uncertain:\n# [model_error]\n"
+                             "# deflection_percent = {:.3g}\n# contour_percent = {:.3g}\n"
+                             "# size_um = {:.3g}\n",
+                             100 * result.error.deflection, 100 * result.error.contour, 1000 * result.error.size_mm) +
+                 report::fitted_tools_toml(result));
+  write_file(folder / "material.toml", head + report::parameter_comments(result, of_material) + "[material]\n" +
+                                           machine::material_text(first.material));
   write_file(folder / "report.html", report::fit_parts_page(result));
 }
 

@@ -15,17 +15,19 @@ namespace camber::cli {
 namespace {
 
 void add_fit_parts(CLI::App& app, const GlobalOptions& options, Action& chosen) {
-  auto* command = app.add_subcommand(
-      "fit-parts", "fit forces, stiffness, gains and tool diameters to measured features of parts");
+  auto* command =
+      app.add_subcommand("fit-parts", "fit forces, stiffness, gains and tool diameters to measured features of parts");
   auto arguments = std::make_shared<FitPartsArguments>();
   command->add_option("jobs", arguments->jobs, "jobs whose [[feature]] have measured values")
       ->required()
       ->type_name("J.toml");
-  command->add_option("-o,--output", arguments->folder, "folder for machine.toml, tools.toml, material.toml, report.html")
+  command
+      ->add_option("-o,--output", arguments->folder, "folder for machine.toml, tools.toml, material.toml, report.html")
       ->required()
       ->type_name("DIR");
   command
-      ->add_option("--hold-out", arguments->hold_out, "job (its file without ending) or part that is judged, not fitted")
+      ->add_option("--hold-out", arguments->hold_out,
+                   "job (its file without ending) or part that is judged, not fitted")
       ->expected(1)
       ->take_all()
       ->type_name("NAME");

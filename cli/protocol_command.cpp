@@ -23,8 +23,8 @@ std::string machine_from(const std::string& folder, const std::string& machine) 
 }
 
 int write_test_piece(const ProtocolArguments& arguments, const GlobalOptions& options) {
-  for (const calib::TestPieceFile& file : calib::test_piece(machine_from(arguments.folder, arguments.machine),
-                                                            {.diameter_mm = arguments.diameter_mm})) {
+  for (const calib::TestPieceFile& file :
+       calib::test_piece(machine_from(arguments.folder, arguments.machine), {.diameter_mm = arguments.diameter_mm})) {
     write_file(std::filesystem::path(arguments.folder) / file.name, file.text);
     if (!options.quiet) fmt::print("{:<18} {}\n", file.name, file.tells);
   }

@@ -19,10 +19,10 @@ using machine::FeatureFilter;
 using machine::FeatureKind;
 using Places = std::vector<std::array<double, 2>>;
 
-constexpr int kAngles = 72;       // of a circle, unless the instrument's are given
-constexpr int kCircles = 9;       // along an axis
-constexpr int kStations = 24;     // along a wall
-constexpr double kMargin = 0.1;   // of a length, at either end: nobody measures at an edge
+constexpr int kAngles = 72;      // of a circle, unless the instrument's are given
+constexpr int kCircles = 9;      // along an axis
+constexpr int kStations = 24;    // along a wall
+constexpr double kMargin = 0.1;  // of a length, at either end: nobody measures at an edge
 constexpr double kFar_mm2 = 1e12;
 
 /// `count` places from `from` to `to`, both among them.
@@ -573,8 +573,9 @@ std::string quoted(const std::string& name) {
 
 }  // namespace
 
-std::vector<FeatureResult> evaluate(const std::vector<Feature>& features, std::span<const removal::SurfacePoint> surface,
-                                    double voxel_mm, const ModelError& error) {
+std::vector<FeatureResult> evaluate(const std::vector<Feature>& features,
+                                    std::span<const removal::SurfacePoint> surface, double voxel_mm,
+                                    const ModelError& error) {
   std::vector<FeatureResult> out(features.size());
   std::vector<Evaluation> all;
   all.reserve(features.size());
@@ -596,11 +597,11 @@ std::string features_csv(const std::vector<FeatureResult>& results) {
       "within\n";
   for (const FeatureResult& r : results) {
     const auto within = r.within();
-    out += fmt::format("{},{},{:.6f},{},{},{},{},{},{},{},{},{}\n", quoted(r.feature),
-                       machine::kFeatureKindWords[static_cast<std::size_t>(r.kind)], r.nominal_mm,
-                       cell(r.predicted_mm, 6), cell(r.std_mm, 6), cell(r.measured_mm, 6), cell(r.difference_um(), 3),
-                       cell(r.form_um, 3), cell(r.taper_um, 3), cell(r.lower_mm, 6), cell(r.upper_mm, 6),
-                       within ? (*within ? "1" : "0") : "");
+    out +=
+        fmt::format("{},{},{:.6f},{},{},{},{},{},{},{},{},{}\n", quoted(r.feature),
+                    machine::kFeatureKindWords[static_cast<std::size_t>(r.kind)], r.nominal_mm, cell(r.predicted_mm, 6),
+                    cell(r.std_mm, 6), cell(r.measured_mm, 6), cell(r.difference_um(), 3), cell(r.form_um, 3),
+                    cell(r.taper_um, 3), cell(r.lower_mm, 6), cell(r.upper_mm, 6), within ? (*within ? "1" : "0") : "");
   }
   return out;
 }

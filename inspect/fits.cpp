@@ -33,7 +33,8 @@ struct Range {
 
 Range range_of(const VectorXd& d) { return {d.minCoeff(), d.maxCoeff()}; }
 
-/// Gauss-Newton for the least sum of (d - r)^2 over the parameters and, with_radius, r. Returns whether it came to rest.
+/// Gauss-Newton for the least sum of (d - r)^2 over the parameters and, with_radius, r. Returns whether it came to
+/// rest.
 bool least_squares(const DistancesAt& at, bool with_radius, VectorXd& p, double& radius) {
   for (int step = 0; step < kSteps; ++step) {
     const Distances d = at(p);
@@ -155,8 +156,8 @@ DistancesAt tilted_plane(std::span<const Vec3> points, const PlaneFit& plane) {
     for (Eigen::Index i = 0; i < out.value.size(); ++i) {
       const Vec3 r = points[static_cast<std::size_t>(i)] - plane.point_mm;
       out.value[i] = raw.dot(r) / length;
-      for (int k = 0; k < 2; ++k) out.slope(i, k) = uv[static_cast<std::size_t>(k)].dot(r) / length -
-                                                    out.value[i] * p[k] / (length * length);
+      for (int k = 0; k < 2; ++k)
+        out.slope(i, k) = uv[static_cast<std::size_t>(k)].dot(r) / length - out.value[i] * p[k] / (length * length);
     }
     return out;
   };

@@ -7,9 +7,9 @@
 namespace camber::inspect {
 namespace {
 
-constexpr double kWindow_mm = 0.25;     // between nominal and programmed surface
-constexpr double kFacing = 0.9;         // cosine between the normals
-constexpr double kReachVoxels = 1.5;    // of a reading
+constexpr double kWindow_mm = 0.25;   // between nominal and programmed surface
+constexpr double kFacing = 0.9;       // cosine between the normals
+constexpr double kReachVoxels = 1.5;  // of a reading
 
 double window_of(const Face& face) {
   return face.radius_mm > 0 ? std::min(kWindow_mm, face.radius_mm / 4) : kWindow_mm;

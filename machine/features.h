@@ -50,8 +50,8 @@ struct Feature {
   std::vector<Vec3> points_mm;
   std::array<std::string, 2> of;  ///< distance: names of the features; empty: axis_mm
   double nominal_mm = 0;
-  std::optional<std::array<double, 2>> tol_mm;  ///< limits as deviations from the nominal size
-  std::optional<double> depth_mm;               ///< below axis_mm[0], where it was measured; not given: all along
+  std::optional<std::array<double, 2>> tol_mm;   ///< limits as deviations from the nominal size
+  std::optional<double> depth_mm;                ///< below axis_mm[0], where it was measured; not given: all along
   std::optional<std::array<double, 2>> arc_rad;  ///< bore, boss: part of the circle, counter-clockwise from +X
   double extent_mm = 0;  ///< plane, wall, distance: radius about the axis that is probed; 0: all of the face
   int points = 0;        ///< of the instrument; 0: every point of the predicted surface

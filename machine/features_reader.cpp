@@ -64,10 +64,10 @@ void read_tolerance(TomlTable& table, Feature& f) {
   if (!tol) return;
   f.tol_mm = {(*tol)[0], (*tol)[1]};
   if ((*tol)[0] >= (*tol)[1])
-    table.error_at("tol_mm",
-                   fmt::format("tol_mm = [{:g}, {:g}]; the lower limit must be below the upper one", (*tol)[0],
-                               (*tol)[1]),
-                   "value-range");
+    table.error_at(
+        "tol_mm",
+        fmt::format("tol_mm = [{:g}, {:g}]; the lower limit must be below the upper one", (*tol)[0], (*tol)[1]),
+        "value-range");
 }
 
 void read_arc(TomlTable& table, Feature& f) {
@@ -76,10 +76,10 @@ void read_arc(TomlTable& table, Feature& f) {
   f.arc_rad = {rad_from_deg((*arc)[0]), rad_from_deg((*arc)[1])};
   if (!round(f.kind)) table.error_at_name("arc_deg", "arc_deg belongs to kinds \"bore\" and \"boss\"", "key-unused");
   if ((*arc)[0] >= (*arc)[1] || (*arc)[1] - (*arc)[0] > 360)
-    table.error_at("arc_deg",
-                   fmt::format("arc_deg = [{:g}, {:g}]; angles that ascend, by 360 at most, were expected", (*arc)[0],
-                               (*arc)[1]),
-                   "value-range");
+    table.error_at(
+        "arc_deg",
+        fmt::format("arc_deg = [{:g}, {:g}]; angles that ascend, by 360 at most, were expected", (*arc)[0], (*arc)[1]),
+        "value-range");
 }
 
 void read_filter(TomlTable& table, Feature& f) {
@@ -95,9 +95,8 @@ void read_filter(TomlTable& table, Feature& f) {
 
 /// measured_mm = [...], measured = "table.csv" with perhaps measured_columns = "map.toml".
 void read_measured(TomlTable& table, const std::filesystem::path& folder, Feature& f, Diagnostics& diagnostics) {
-  for (const double v :
-       table.number_list("measured_mm", kAnyNumber, "measured values, as in [3.996, 3.998],")
-           .value_or(std::vector<double>{})) {
+  for (const double v : table.number_list("measured_mm", kAnyNumber, "measured values, as in [3.996, 3.998],")
+                            .value_or(std::vector<double>{})) {
     f.measured_mm.push_back(v);
     f.measured.push_back({.feature = f.name, .part = {}, .date = {}, .value_mm = v});
   }
@@ -114,7 +113,8 @@ void read_measured(TomlTable& table, const std::filesystem::path& folder, Featur
        read_measured_table(resolved(given), columns.empty() ? columns : resolved(columns), diagnostics))
     if (v.feature == f.name) f.measured.push_back(std::move(v));
   if (f.measured.empty())
-    table.warning_at("measured", fmt::format("{} has no value of \"{}\"", resolved(given), f.name), "feature-unmeasured");
+    table.warning_at("measured", fmt::format("{} has no value of \"{}\"", resolved(given), f.name),
+                     "feature-unmeasured");
 }
 
 Feature read_feature(TomlTable& table, const std::filesystem::path& folder, Diagnostics& diagnostics) {
@@ -144,8 +144,8 @@ void check_names(std::vector<TomlTable>& tables, const std::vector<Feature>& fea
   std::set<std::string> names;
   for (std::size_t i = 0; i < features.size(); ++i)
     if (!features[i].name.empty() && !names.insert(features[i].name).second)
-      tables[i].error_at("name", fmt::format("two features are called \"{}\"; different names were expected",
-                                             features[i].name),
+      tables[i].error_at("name",
+                         fmt::format("two features are called \"{}\"; different names were expected", features[i].name),
                          "feature-name");
   for (std::size_t i = 0; i < features.size(); ++i)
     for (const std::string& other : features[i].of)

@@ -146,12 +146,11 @@ MeasuredColumns read_measured_columns(const std::string& path, Diagnostics& diag
   const auto file = read_toml(path, "a column map (feature, part, date, value)", diagnostics);
   diagnostics.throw_if_errors();
   TomlTable top = TomlTable::top(*file, diagnostics);
-  for (const auto& [key, field] : {std::pair{"feature", &MeasuredColumns::feature},
-                                   std::pair{"part", &MeasuredColumns::part}, std::pair{"date", &MeasuredColumns::date},
-                                   std::pair{"value", &MeasuredColumns::value},
-                                   std::pair{"nominal", &MeasuredColumns::nominal},
-                                   std::pair{"lower", &MeasuredColumns::lower},
-                                   std::pair{"upper", &MeasuredColumns::upper}})
+  for (const auto& [key, field] :
+       {std::pair{"feature", &MeasuredColumns::feature}, std::pair{"part", &MeasuredColumns::part},
+        std::pair{"date", &MeasuredColumns::date}, std::pair{"value", &MeasuredColumns::value},
+        std::pair{"nominal", &MeasuredColumns::nominal}, std::pair{"lower", &MeasuredColumns::lower},
+        std::pair{"upper", &MeasuredColumns::upper}})
     out.*field = top.text(key, out.*field);
   out.separator = kSeparators[top.choice("separator", kSeparatorWords, 0)];
   out.mm_per_unit = kMmPerUnit[top.choice("unit", kUnitWords, 0)];

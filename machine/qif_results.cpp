@@ -60,10 +60,9 @@ class QifFile {
     const std::string& text = source.text();
     const auto parsed = document_.load_buffer(text.data(), text.size());
     if (!parsed)
-      throw InputError({source.diagnostic(Severity::error, static_cast<std::size_t>(parsed.offset),
-                                          fmt::format("not well-formed XML ({}); QIF results were expected",
-                                                      parsed.description()),
-                                          "qif-results")});
+      throw InputError({source.diagnostic(
+          Severity::error, static_cast<std::size_t>(parsed.offset),
+          fmt::format("not well-formed XML ({}); QIF results were expected", parsed.description()), "qif-results")});
     root_ = document_.document_element();
     if (local_name(root_) != "QIFDocument")
       fail(fmt::format("begins with <{}>; a <QIFDocument> was expected", root_.name()));

@@ -85,10 +85,12 @@ double magnification(std::span<const FeatureResult> results) {
 std::string drawn(const FeatureResult& r, double x, double y, double scale) {
   const bool round = r.kind == machine::FeatureKind::bore || r.kind == machine::FeatureKind::boss;
   const double cx = x + kCell / 2, cy = y + kCell / 2, base = kBase_mm * kPixelsPerMm;
-  std::string out = round ? fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"none\" "
-                                        "stroke=\"#9aa5b1\"/>\n", cx, cy, base)
-                          : fmt::format("<path stroke=\"#9aa5b1\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", cx - base, cy,
-                                        cx + base);
+  std::string out =
+      round ? fmt::format(
+                  "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"none\" "
+                  "stroke=\"#9aa5b1\"/>\n",
+                  cx, cy, base)
+            : fmt::format("<path stroke=\"#9aa5b1\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", cx - base, cy, cx + base);
   const std::size_t n = r.deviations_um.size();
   out += "<path fill=\"none\" stroke=\"#1668b8\" d=\"";
   for (std::size_t i = 0; i < n; ++i) {
@@ -114,9 +116,10 @@ std::string deviations_svg(std::span<const FeatureResult> results, double scale)
   }
   if (drawn_count == 0) return {};
   const int rows = (drawn_count + kPerRow - 1) / kPerRow;
-  return fmt::format("<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Deviations of the "
-                     "features\">\n",
-                     kPerRow * kCell, rows * (kCell + 18)) +
+  return fmt::format(
+             "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Deviations of the "
+             "features\">\n",
+             kPerRow * kCell, rows * (kCell + 18)) +
          body + "</svg>\n";
 }
 

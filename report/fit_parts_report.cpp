@@ -72,14 +72,16 @@ std::string scatter_svg(const FitPartsResult& result, double PartsResidual::*con
       "<svg class=\"histogram\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" aria-label=\"Residuals over {}\">\n", kWidth,
       kHeight, axis);
   for (const double um : {-most, 0.0, most})
-    out += fmt::format("<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n<text x=\"{:.1f}\" y=\"{:.1f}\" "
-                       "text-anchor=\"end\">{}</text>\n",
-                       kLeft, y(um), kWidth - kRight, kLeft - 6, y(um) + 4, number_text(um, 1));
+    out += fmt::format(
+        "<path stroke=\"#e3e8ee\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n<text x=\"{:.1f}\" y=\"{:.1f}\" "
+        "text-anchor=\"end\">{}</text>\n",
+        kLeft, y(um), kWidth - kRight, kLeft - 6, y(um) + 4, number_text(um, 1));
   for (const PartsResidual& r : result.residuals)
-    out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\" fill-opacity=\"0.7\"><title>{} {} "
-                       "{}</title></circle>\n",
-                       x(r.*condition), y(r.residual_um()), r.held_out ? "#c62828" : "#1668b8", html_text(r.job),
-                       html_text(r.feature), number_text(r.residual_um(), 2));
+    out += fmt::format(
+        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\" fill-opacity=\"0.7\"><title>{} {} "
+        "{}</title></circle>\n",
+        x(r.*condition), y(r.residual_um()), r.held_out ? "#c62828" : "#1668b8", html_text(r.job), html_text(r.feature),
+        number_text(r.residual_um(), 2));
   for (const double v : {lo, hi})
     out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.6g}</text>\n", x(v),
                        kHeight - kBottom + 17, v);
@@ -90,8 +92,9 @@ std::string scatter_svg(const FitPartsResult& result, double PartsResidual::*con
 TextTable parameters_table(const FitPartsResult& result) {
   TextTable table{"Parameters", {"parameter", "value", "standard error", "unit", "start", ""}, {}, {}};
   for (const auto& p : result.parameters)
-    table.rows.push_back({p.name, fmt::format("{:.6g}", p.value), p.std_error ? fmt::format("{:.2g}", *p.std_error) : "–",
-                          p.unit, fmt::format("{:.6g}", p.start), p.note});
+    table.rows.push_back({p.name, fmt::format("{:.6g}", p.value),
+                          p.std_error ? fmt::format("{:.2g}", *p.std_error) : "–", p.unit,
+                          fmt::format("{:.6g}", p.start), p.note});
   return table;
 }
 
@@ -163,8 +166,7 @@ std::string fit_parts_text(const FitPartsResult& result, bool suggest) {
   for (const auto& g : result.groups)
     fmt::format_to(std::back_inserter(out), "{:<28} {:>5} {:>9} {:>13}\n", g.feature, fmt::format("T{}", g.tool),
                    in_um(g.rms_um), in_um(g.held_out_rms_um));
-  for (const std::string& left : result.left_out)
-    out += fmt::format("left out, no prediction: {}\n", left);
+  for (const std::string& left : result.left_out) out += fmt::format("left out, no prediction: {}\n", left);
   if (suggest)
     for (const std::string& s : result.suggestions) out += fmt::format("suggested: {}\n", s);
   return out + fmt::format("residual {:.2f} um rms over all; {}; {} predictions\n", result.rms_um, result.message,

@@ -15,10 +15,10 @@ using machine::Job;
 /// A shop whose true gains, forces, stiffness and tool diameters are hidden from the fit. Sizes by closed forms:
 /// bores follow the lag (radius error v^2 / (r K^2)), walls of slots the bending (cantilever and root), both the tool.
 struct Shop {
-  double gain_x = 60, gain_y = 45;                   ///< 1/s
-  double cutting_MPa = 900, edge_N_per_mm = 14;      ///< true
+  double gain_x = 60, gain_y = 45;               ///< 1/s
+  double cutting_MPa = 900, edge_N_per_mm = 14;  ///< true
   double root_N_per_mm = 9000;
-  double offset_mm[2] = {0.004, -0.006};             ///< by clamping: short, long
+  double offset_mm[2] = {0.004, -0.006};  ///< by clamping: short, long
 };
 
 struct Cut {
@@ -143,9 +143,11 @@ TEST(FitParts, StandardErrorsAreRightOverFiftySeeds) {
   for (unsigned seed = 1; seed <= 50; ++seed) {
     const FitPartsResult r = fitted(parts(shop, seed));
     ASSERT_TRUE(r.converged) << seed;
-    for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{
-             {"axis.x.position_gain_per_s", shop.gain_x}, {"axis.y.position_gain_per_s", shop.gain_y},
-             {"tool.1.diameter_mm (overhang 40)", 5.994}, {"ktc_MPa", shop.cutting_MPa}}) {
+    for (const auto& [name, value] :
+         std::vector<std::pair<std::string, double>>{{"axis.x.position_gain_per_s", shop.gain_x},
+                                                     {"axis.y.position_gain_per_s", shop.gain_y},
+                                                     {"tool.1.diameter_mm (overhang 40)", 5.994},
+                                                     {"ktc_MPa", shop.cutting_MPa}}) {
       const PartsParameter& p = named(r, name);
       ASSERT_TRUE(p.std_error) << name;
       square += std::pow((p.value - value) / *p.std_error, 2);
@@ -215,9 +217,10 @@ TEST(FitParts, NothingMeasuredIsAnError) {
     fitted(jobs);
     FAIL();
   } catch (const InputError& problem) {
-    EXPECT_EQ(std::string(problem.what()),
-              "part_1.toml: error: no feature has a measured value; [[feature]] with measured_mm or measured was expected "
-              "[parts-unmeasured]");
+    EXPECT_EQ(
+        std::string(problem.what()),
+        "part_1.toml: error: no feature has a measured value; [[feature]] with measured_mm or measured was expected "
+        "[parts-unmeasured]");
   }
 }
 

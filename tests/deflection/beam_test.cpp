@@ -53,8 +53,8 @@ TEST(Beam, TypicalFlutesBendAsFlutesAndTheRestAsAShank) {
   tool.typical_flute_mm = 18;
   given.flute_length_mm = 18;
   EXPECT_EQ(beam_of(tool).compliance_mm_per_N(0, 0), beam_of(given).compliance_mm_per_N(0, 0));
-  EXPECT_LT(beam_of(tool).compliance_mm_per_N(0, 0), 0.7 * beam_of(testing::make_tool(machine::ToolType::flat, 6, 4, 30))
-                                                              .compliance_mm_per_N(0, 0));
+  EXPECT_LT(beam_of(tool).compliance_mm_per_N(0, 0),
+            0.7 * beam_of(testing::make_tool(machine::ToolType::flat, 6, 4, 30)).compliance_mm_per_N(0, 0));
 }
 
 TEST(Beam, FirstFrequencyOfAUniformBarIsWithinTwoPercentOfTheClosedForm) {

@@ -65,8 +65,10 @@ FeatureResult only(const Feature& f, const std::vector<SurfacePoint>& points, co
 
 TEST(Evaluate, BoreWithEvenMaterialIsSmallerByTwiceIt) {
   std::vector<SurfacePoint> points;
-  add_hole(points, {3, 4, 0}, 2.01, 5, [](double, double) { return 0.006; }, 0.002);
-  const FeatureResult r = only(bore("A", {3, 4, 0}, 4, 5), points, {.deflection = 0.5, .contour = 0.1, .size_mm = 0.001});
+  add_hole(
+      points, {3, 4, 0}, 2.01, 5, [](double, double) { return 0.006; }, 0.002);
+  const FeatureResult r =
+      only(bore("A", {3, 4, 0}, 4, 5), points, {.deflection = 0.5, .contour = 0.1, .size_mm = 0.001});
   ASSERT_TRUE(r.predicted_mm) << r.reason;
   EXPECT_NEAR(*r.commanded_mm, 4.02, 1e-9);
   EXPECT_NEAR(*r.predicted_mm, 4.02 - 0.016, 1e-9);
@@ -123,7 +125,7 @@ TEST(Evaluate, PositionsAreJudgedAfterTheAlignment) {
 
 TEST(Evaluate, DistanceOfTwoBoresFollowsTheirMiddles) {
   std::vector<SurfacePoint> points;
-  add_hole(points, {0, 0, 0}, 2, 3, [](double a, double) { return 0.003 * std::cos(a); });   // 3 um towards -X
+  add_hole(points, {0, 0, 0}, 2, 3, [](double a, double) { return 0.003 * std::cos(a); });    // 3 um towards -X
   add_hole(points, {25, 0, 0}, 2, 3, [](double a, double) { return -0.004 * std::cos(a); });  // 4 um towards +X
   Feature d;
   d.name = "D";
@@ -150,9 +152,9 @@ TEST(Evaluate, PartOfACircleIsFoundAmongStraightWalls) {
 
 TEST(Evaluate, PlaneSlotWallAndPoints) {
   std::vector<SurfacePoint> points;
-  add_face(points, {0, 0, -2}, {10, 0, 0}, {0, 6, 0}, [](double, double) { return 0.003; });         // floor, +Z
-  add_face(points, {0, 0, -2}, {0, 0, 2}, {10, 0, 0}, [](double, double) { return 0.004; });         // y = 0, +Y
-  add_face(points, {0, 6, -2}, {10, 0, 0}, {0, 0, 2}, [](double, double b) { return 0.002 * b; });   // y = 6, -Y
+  add_face(points, {0, 0, -2}, {10, 0, 0}, {0, 6, 0}, [](double, double) { return 0.003; });        // floor, +Z
+  add_face(points, {0, 0, -2}, {0, 0, 2}, {10, 0, 0}, [](double, double) { return 0.004; });        // y = 0, +Y
+  add_face(points, {0, 6, -2}, {10, 0, 0}, {0, 0, 2}, [](double, double b) { return 0.002 * b; });  // y = 6, -Y
   Feature floor, slot, spots;
   floor.kind = FeatureKind::plane;
   floor.axis_mm = {Vec3(5, 3, -7), Vec3(5, 3, -2)};

@@ -35,13 +35,15 @@ TEST(Minimax, FindsTheCornerOfATriangle) {
 }
 
 TEST(Minimax, SaysWhereNothingFulfilsAllInequalities) {
-  const std::vector<Inequality> sides{{Eigen::VectorXd::Constant(1, 1.0), -2}, {Eigen::VectorXd::Constant(1, -1.0), -2}};
+  const std::vector<Inequality> sides{{Eigen::VectorXd::Constant(1, 1.0), -2},
+                                      {Eigen::VectorXd::Constant(1, -1.0), -2}};
   EXPECT_FALSE(minimize(Eigen::VectorXd::Constant(1, 1.0), sides, Eigen::VectorXd::Constant(1, 10.0)).optimal);
 }
 
 TEST(Circle, ThreeLobesHaveClosedFormsForEveryFilter) {
-  // r = R + e cos 3t. The three highest and the three lowest points are 120 degrees apart, so that no shift of the centre
-  // brings all three in or out: inscribed R - e, circumscribed R + e, zone 2 e about R, all about the lobes' centre.
+  // r = R + e cos 3t. The three highest and the three lowest points are 120 degrees apart, so that no shift of the
+  // centre brings all three in or out: inscribed R - e, circumscribed R + e, zone 2 e about R, all about the lobes'
+  // centre.
   const double radius = 5, e = 0.004;
   const auto points = ring(36, [&](double t) { return radius + e * std::cos(3 * t); });
   const std::array<double, 4> wanted{radius, radius - e, radius + e, radius};
@@ -87,7 +89,8 @@ TEST(Circle, ChebyshevFitsOfRandomPointsAreOptimal) {
       for (const Vec2& p : points) lo = std::min(lo, (p - c).norm()), hi = std::max(hi, (p - c).norm());
       return std::pair{lo, hi};
     };
-    const CircleFit zone = fit_circle(points, FeatureFilter::min_zone), in = fit_circle(points, FeatureFilter::max_inscribed),
+    const CircleFit zone = fit_circle(points, FeatureFilter::min_zone),
+                    in = fit_circle(points, FeatureFilter::max_inscribed),
                     out = fit_circle(points, FeatureFilter::min_circumscribed);
     for (int k = 0; k < 200; ++k) {
       const double step = std::pow(10, -2 - k % 5);
@@ -122,7 +125,8 @@ TEST(Plane, MinimumZoneOfABumpIsHalfwayBetweenBumpAndFeet) {
   // Four feet at 0 and one point at h in the middle: zone h, plane at h / 2; least squares h / 5.
   const double h = 0.01;
   std::vector<Vec3> points{{-5, -5, 0}, {5, -5, 0}, {5, 5, 0}, {-5, 5, 0}, {0, 0, h}};
-  const PlaneFit zone = fit_plane(points, FeatureFilter::min_zone), mean = fit_plane(points, FeatureFilter::least_squares);
+  const PlaneFit zone = fit_plane(points, FeatureFilter::min_zone),
+                 mean = fit_plane(points, FeatureFilter::least_squares);
   EXPECT_NEAR(zone.zone_mm, h, kExact_mm);
   EXPECT_NEAR(zone.normal.dot(zone.point_mm) / zone.normal.z(), h / 2, kExact_mm);
   EXPECT_NEAR(mean.normal.dot(mean.point_mm) / mean.normal.z(), h / 5, kExact_mm);

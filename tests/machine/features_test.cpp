@@ -91,14 +91,15 @@ std::string shown(const std::string& line, std::size_t column) {
 
 TEST(Features, MissingKeysAreNamed) {
   const std::string line = shown("[[feature]]", 1);
-  EXPECT_EQ(read("[[feature]]\nkind = \"bore\"\n").messages,
-            "job.toml:1:1: error: name is missing in [[feature]]; a text in quotes was expected [key-missing]" + line +
-                "job.toml:1:1: error: axis_mm is missing in [[feature]]; [[x, y, z], [x, y, z]], two points, was expected "
-                "[key-missing]" +
-                line +
-                "job.toml:1:1: error: nominal_mm is missing in [[feature]]; a number greater than zero was expected "
-                "[key-missing]" +
-                line);
+  EXPECT_EQ(
+      read("[[feature]]\nkind = \"bore\"\n").messages,
+      "job.toml:1:1: error: name is missing in [[feature]]; a text in quotes was expected [key-missing]" + line +
+          "job.toml:1:1: error: axis_mm is missing in [[feature]]; [[x, y, z], [x, y, z]], two points, was expected "
+          "[key-missing]" +
+          line +
+          "job.toml:1:1: error: nominal_mm is missing in [[feature]]; a number greater than zero was expected "
+          "[key-missing]" +
+          line);
 }
 
 TEST(Features, EveryMistakeIsNamedAtItsPlace) {
@@ -108,13 +109,13 @@ TEST(Features, EveryMistakeIsNamedAtItsPlace) {
   const std::vector<Case> cases{
       {replaced(kBore, "[1, 2, -5]", "[1, 2, 0]"),
        "job.toml:4:11: error: the two points of axis_mm are the same; two different points were expected "
-       "[feature-axis]" + shown("axis_mm = [[1, 2, 0], [1, 2, 0]]", 11)},
+       "[feature-axis]" +
+           shown("axis_mm = [[1, 2, 0], [1, 2, 0]]", 11)},
       {kBore + "tol_mm = [0.02, -0.01]\n",
        "job.toml:6:10: error: tol_mm = [0.02, -0.01]; the lower limit must be below the upper one [value-range]" +
            shown("tol_mm = [0.02, -0.01]", 10)},
       {kBore + "of = [\"A\", \"B\"]\n",
-       "job.toml:6:1: error: of belongs to kind = \"distance\" alone [key-unused]" +
-           shown("of = [\"A\", \"B\"]", 1)},
+       "job.toml:6:1: error: of belongs to kind = \"distance\" alone [key-unused]" + shown("of = [\"A\", \"B\"]", 1)},
       {kBore + "measured = \"none.csv\"\n",
        "job.toml:6:12: error: measured: no such file: none.csv (paths are relative to the job's folder) "
        "[file-missing]" +
@@ -134,9 +135,8 @@ TEST(Features, EveryMistakeIsNamedAtItsPlace) {
 
 TEST(Features, ATableWithoutTheFeatureIsAWarning) {
   const auto [features, messages] = read(kBore + "measured = \"values.csv\"\n", "feature,value_mm\nB,4\n");
-  EXPECT_EQ(messages,
-            "job.toml:6:12: warning: values.csv has no value of \"A\" [feature-unmeasured]" +
-                shown("measured = \"values.csv\"", 12));
+  EXPECT_EQ(messages, "job.toml:6:12: warning: values.csv has no value of \"A\" [feature-unmeasured]" +
+                          shown("measured = \"values.csv\"", 12));
   EXPECT_TRUE(features.front().measured.empty());
 }
 

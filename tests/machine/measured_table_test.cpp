@@ -78,17 +78,19 @@ TEST(Qif, BadFilesSayWhatWasExpected) {
   EXPECT_EQ(qif_message("<html/>"), "m.qif: error: begins with <html>; a <QIFDocument> was expected [qif-results]");
   EXPECT_EQ(qif_message("<QIFDocument/>"),
             "m.qif: error: has no <MeasurementResults>; the results of a measurement were expected [qif-results]");
-  EXPECT_EQ(qif_message("<QIFDocument><MeasurementResults><DiameterCharacteristicActual id=\"4\"><CharacteristicItemId>9"
-                        "</CharacteristicItemId><Value>2</Value></DiameterCharacteristicActual></MeasurementResults>"
-                        "</QIFDocument>"),
-            "m.qif: error: <DiameterCharacteristicActual id=\"4\"> names the item \"9\", which is not there "
-            "[qif-results]");
+  EXPECT_EQ(
+      qif_message("<QIFDocument><MeasurementResults><DiameterCharacteristicActual id=\"4\"><CharacteristicItemId>9"
+                  "</CharacteristicItemId><Value>2</Value></DiameterCharacteristicActual></MeasurementResults>"
+                  "</QIFDocument>"),
+      "m.qif: error: <DiameterCharacteristicActual id=\"4\"> names the item \"9\", which is not there "
+      "[qif-results]");
 }
 
 TEST(MeasuredCsv, ReadsQuotesCommentsAndRowsWithoutAValue) {
   const TempFolder folder;
   const auto values = read_measured_csv(
-      folder.write("m.csv", "# Mitutoyo\r\nfeature,part,value_mm,lower_mm\r\n\"A, top\",1,4.5,4.4\r\nB,1,,\r\nC,2,-1,\r\n"),
+      folder.write("m.csv",
+                   "# Mitutoyo\r\nfeature,part,value_mm,lower_mm\r\n\"A, top\",1,4.5,4.4\r\nB,1,,\r\nC,2,-1,\r\n"),
       {});
   ASSERT_EQ(values.size(), 2u);
   EXPECT_EQ(values[0].feature, "A, top");
@@ -103,8 +105,7 @@ TEST(MeasuredCsv, ColumnMapNamesColumnsUnitAndSeparator) {
   const std::string map = folder.write(
       "map.toml", "feature = \"Merkmal\"\nvalue = \"Ist\"\npart = \"Teil\"\nseparator = \";\"\nunit = \"inch\"\n");
   Diagnostics diagnostics;
-  const auto values =
-      read_measured_table(folder.write("m.csv", "Teil;Merkmal;Ist\n3;D1;0.5\n"), map, diagnostics);
+  const auto values = read_measured_table(folder.write("m.csv", "Teil;Merkmal;Ist\n3;D1;0.5\n"), map, diagnostics);
   ASSERT_EQ(values.size(), 1u);
   EXPECT_EQ(values[0].feature, "D1");
   EXPECT_EQ(values[0].part, "3");
