@@ -127,6 +127,10 @@ class Fit {
     ++out_.predictions;
     return options_.predict(job_at(j, x));
   }
+  Sizes predict_coarsely(std::size_t j, const VectorXd& x) {
+    ++out_.predictions;
+    return options_.predict(coarser(job_at(j, x)));
+  }
 
   void show(const std::string& what, std::size_t done, std::size_t all) const {
     if (options_.progress) options_.progress(what, static_cast<double>(done) / static_cast<double>(all));
@@ -163,16 +167,17 @@ class Fit {
     std::size_t done = 0;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
       slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
+      if (!is_fitted_job(j)) continue;
+      const Sizes here = predict_coarsely(j, x_);
       for (std::size_t k = 0; k < unknowns_.size(); ++k, ++done) {
-        if (unknowns_[k].adds() || !unknowns_[k].of_job[j] || !is_fitted_job(j)) continue;
+        if (unknowns_[k].adds() || !unknowns_[k].of_job[j]) continue;
         show("slopes", done, jobs_.size() * unknowns_.size());
         const auto column = static_cast<Eigen::Index>(k);
         VectorXd x = x_;
         x[column] += kStep;
-        const Sizes there = predict(j, x);
+        const Sizes there = predict_coarsely(j, x);
         for (std::size_t f = 0; f < there.size(); ++f)
-          if (there[f] && sizes_[j][f])
-            slope_[j](static_cast<Eigen::Index>(f), column) = (*there[f] - *sizes_[j][f]) / kStep;
+          if (there[f] && here[f]) slope_[j](static_cast<Eigen::Index>(f), column) = (*there[f] - *here[f]) / kStep;
       }
     }
   }
@@ -595,6 +600,13 @@ std::string job_name(const Job& job) {
   const std::filesystem::path path(job.path);
   if (path.stem() == "job" && path.has_parent_path()) return path.parent_path().filename().string();
   return path.stem().string();
+}
+
+Job coarser(Job job) {
+  constexpr double kWidest_rad = 4 * kPi / 180;
+  job.simulation.voxel_mm *= 2;
+  job.simulation.rotation_step_rad = std::min(4 * job.simulation.rotation_step_rad, kWidest_rad);
+  return job;
 }
 
 std::vector<std::optional<double>> predict_features(const Job& job) {

@@ -15,6 +15,9 @@ using PredictFeatures = std::function<std::vector<std::optional<double>>(const m
 /// By a whole prediction (simulate::predict) and inspect::evaluate.
 std::vector<std::optional<double>> predict_features(const machine::Job& job);
 
+/// The job on a grid half as fine, with steps of rotation four times as wide (4 degrees at most): for slopes.
+machine::Job coarser(machine::Job job);
+
 struct FitPartsOptions {
   PredictFeatures predict = predict_features;
   std::vector<std::string> hold_out{};  ///< names of jobs (file without folder and ending) or parts: judged, not fitted
@@ -78,9 +81,10 @@ struct FitPartsResult {
 /// determine, together with those before it (offsets, common gain, force, root stiffness, edge force, gains apart), to
 /// half of its value stays at its start.
 ///
-/// Ceres solves a linear model of the predictions; predictions at its solution correct it (Broyden), until the step is
-/// below a twentieth of the standard errors. The figures are of the last prediction. Source of the update: Broyden, A
-/// class of methods for solving nonlinear simultaneous equations, Math. Comp. 19 (1965).
+/// Ceres solves a linear model of the predictions, whose slopes come from predictions of coarser() jobs; predictions at
+/// its solution correct it (Broyden), until the step is below a twentieth of the standard errors. The figures are of
+/// the last predictions, which are of the jobs as they are. Source of the update: Broyden, A class of methods for
+/// solving nonlinear simultaneous equations, Math. Comp. 19 (1965).
 ///
 /// Errors [parts-unmeasured]: no feature of any job has a measured value. Throws InputError.
 FitPartsResult fit_parts(const std::vector<machine::Job>& jobs, const FitPartsOptions& options);

@@ -49,7 +49,7 @@ double spread_of(const std::vector<double>& values);  ///< greatest minus least
 double size_by(const std::vector<double>& sizes, FeatureFilter filter);
 
 // What a feature is made of, by its kind.
-void evaluate_cylinder(Evaluation& e);       ///< bore, boss
+void evaluate_cylinder(Evaluation& e);  ///< bore, boss
 void evaluate_plane(Evaluation& e);
 void evaluate_slot(Evaluation& e);
 void evaluate_wall(Evaluation& e);

@@ -22,13 +22,16 @@ struct Shop {
 };
 
 struct Cut {
-  double feed_mm_per_s = 0, overhang_mm = 0, feed_per_tooth_mm = 0;
+  double feed_mm_per_s = 0, overhang_mm = 0;
 };
+
+/// The closed forms know nothing else of a part's program: its feed is in the job's name.
+double feed_of(const Job& job) { return std::stod(job.path.substr(job.path.find('F') + 1)); }
 
 /// The rows of a part: two bores, a slot along X and one along Y, a distance along X.
 std::vector<double> sizes_of(const Job& job) {
   const machine::Tool& tool = job.tools.at(1);
-  const double v = job.compensation.tolerance_um;  // the feed, mm/s: the closed forms know nothing else of a program
+  const double v = feed_of(job);
   const double gx = job.machine.axis[0].position_gain_per_s, gy = job.machine.axis[1].position_gain_per_s;
   const double h = v / 300, force = 0.5 * (job.material.ktc_MPa * h * 2 + job.material.kte_N_per_mm * 2);
   const double l = tool.overhang_mm, ei = tool.youngs_modulus_MPa * kPi / 64 * std::pow(0.8 * tool.diameter_mm, 4);
@@ -51,8 +54,7 @@ std::vector<std::optional<double>> predict(const Job& job) {
 /// What the user enters: wrong gains, forces and stiffness.
 Job entered(const Cut& cut, int number) {
   Job job;
-  job.path = "part_" + std::to_string(number) + ".toml";
-  job.compensation.tolerance_um = cut.feed_mm_per_s;
+  job.path = "part_" + std::to_string(number) + "_F" + std::to_string(static_cast<int>(cut.feed_mm_per_s)) + ".toml";
   for (machine::Axis& axis : job.machine.axis) axis.position_gain_per_s = 50;
   job.material = machine::Material(600, 200, 0, 14, 5);
   machine::Tool tool;
@@ -191,7 +193,7 @@ TEST(FitParts, AnOutlierDoesNotMoveTheFit) {
 TEST(FitParts, HeldOutPartsAreJudgedAndNotFitted) {
   std::vector<Job> jobs = parts({}, 9);
   for (Feature& f : jobs[4].features) f.measured.front().value_mm += 0.05;
-  const FitPartsResult r = fitted(jobs, {"part_5"});
+  const FitPartsResult r = fitted(jobs, {"part_5_F11"});
   EXPECT_LT(r.rms_um, 1.3);
   for (const PartsGroup& g : r.groups) EXPECT_NEAR(*g.held_out_rms_um, 50, 5);
 }
@@ -219,7 +221,7 @@ TEST(FitParts, NothingMeasuredIsAnError) {
   } catch (const InputError& problem) {
     EXPECT_EQ(
         std::string(problem.what()),
-        "part_1.toml: error: no feature has a measured value; [[feature]] with measured_mm or measured was expected "
+        "part_1_F5.toml: error: no feature has a measured value; [[feature]] with measured_mm or measured was expected "
         "[parts-unmeasured]");
   }
 }
