@@ -605,6 +605,7 @@ std::string job_name(const Job& job) {
 Job coarser(Job job) {
   constexpr double kWidest_rad = 4 * kPi / 180;
   job.simulation.voxel_mm *= 2;
+  if (job.simulation.envelope_step_mm > 0) job.simulation.envelope_step_mm *= 1.5;
   job.simulation.rotation_step_rad = std::min(4 * job.simulation.rotation_step_rad, kWidest_rad);
   return job;
 }
