@@ -128,21 +128,21 @@ std::vector<std::pair<std::string, double>> truth_of(const Shop& shop) {
           {"tool.1.diameter_mm (overhang 40)", 6 + shop.offset_mm[1]}};
 }
 
-TEST(FitParts, FindsTheHiddenShopWithinTwoStandardErrors) {
+TEST(FitParts, FindsTheHiddenShop) {
   const Shop shop;
   const FitPartsResult r = fitted(parts(shop, 1));
   ASSERT_TRUE(r.converged) << r.message;
   for (const auto& [name, value] : truth_of(shop)) {
     const PartsParameter& p = named(r, name);
     ASSERT_TRUE(p.std_error) << name << ": " << p.note;
-    EXPECT_NEAR(p.value, value, 2 * *p.std_error) << name;
+    EXPECT_NEAR(p.value, value, 3 * *p.std_error) << name;  // of two, see the next test
   }
   EXPECT_LT(r.rms_um, 1.3);
   EXPECT_NEAR(r.jobs.front().tools.at(1).diameter_mm, named(r, "tool.1.diameter_mm (overhang 15)").value, 1e-12);
 }
 
 /// Standard errors are right: squares of the errors over the standard errors add up to the degrees of freedom.
-TEST(FitParts, StandardErrorsAreRightOverFiftySeeds) {
+TEST(FitParts, StandardErrorsAreRightAndTheTruthIsWithinTwoOverFiftySeeds) {
   const Shop shop;
   double square = 0;
   int count = 0, within_two = 0;
