@@ -44,6 +44,20 @@ void check_hold_out(const std::vector<machine::Job>& jobs, const std::vector<std
   }
 }
 
+constexpr const char* kFiles[] = {"machine.toml", "tools.toml", "material.toml", "report.html"};
+
+/// What the jobs read is not written over.
+void check_files(const std::vector<machine::Job>& jobs, const std::string& folder) {
+  std::error_code ec;
+  for (const machine::Job& job : jobs)
+    for (const std::string& input : {job.path, job.machine_path, job.program})
+      for (const char* name : kFiles) {
+        const std::filesystem::path output = std::filesystem::path(folder) / name;
+        if (std::filesystem::equivalent(output, input, ec))
+          fail_on_file(output.string(), "is an input of a job; another folder was expected", "output-is-input");
+      }
+}
+
 void write_results(const FitPartsArguments& arguments, const calib::FitPartsResult& result) {
   namespace fs = std::filesystem;
   const fs::path folder = arguments.folder;
@@ -73,6 +87,7 @@ void write_results(const FitPartsArguments& arguments, const calib::FitPartsResu
 int run_fit_parts(const FitPartsArguments& arguments, const GlobalOptions& options) {
   const std::vector<machine::Job> jobs = read_jobs(arguments.jobs, options);
   check_hold_out(jobs, arguments.hold_out);
+  check_files(jobs, arguments.folder);
   ProgressLine progress(options, "predicting");
   calib::FitPartsOptions fit;
   fit.hold_out = arguments.hold_out;

@@ -1,5 +1,4 @@
 // fit-force and fit-parts on the command line.
-#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -35,11 +34,8 @@ void add_fit_parts(CLI::App& app, const GlobalOptions& options, Action& chosen) 
   command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
-      const std::filesystem::path folder = arguments->folder;
-      std::vector<std::string> outputs{arguments->json};
-      for (const char* name : {"machine.toml", "tools.toml", "material.toml", "report.html"})
-        outputs.push_back((folder / name).string());
-      check_outputs(outputs, arguments->jobs);
+      check_output_folder(arguments->folder);
+      check_outputs({arguments->json}, arguments->jobs);
       return run_fit_parts(*arguments, options);
     };
   });

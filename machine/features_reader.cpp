@@ -109,10 +109,11 @@ void read_measured(TomlTable& table, const std::filesystem::path& folder, Featur
       return table.error_at(
           key, fmt::format("{}: no such file: {} (paths are relative to the job's folder)", key, resolved(path)),
           "file-missing");
-  for (MeasuredValue& v :
-       read_measured_table(resolved(given), columns.empty() ? columns : resolved(columns), diagnostics))
+  std::vector<MeasuredValue> values =
+      read_measured_table(resolved(given), columns.empty() ? columns : resolved(columns), diagnostics);
+  for (MeasuredValue& v : values)
     if (v.feature == f.name) f.measured.push_back(std::move(v));
-  if (f.measured.empty())
+  if (f.measured.empty() && !values.empty())
     table.warning_at("measured", fmt::format("{} has no value of \"{}\"", resolved(given), f.name),
                      "feature-unmeasured");
 }

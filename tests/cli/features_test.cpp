@@ -50,10 +50,10 @@ TEST(CliFeatures, PredictWritesThemEverywhere) {
   const json f = json::parse(tests::file_text(folder / "r/summary.json"))["features"][0];
   EXPECT_EQ(f["feature"], "bore");
   EXPECT_NEAR(f["commanded_mm"].get<double>(), 10, 0.0005);
-  EXPECT_NEAR(f["predicted_mm"].get<double>(),
-              f["commanded_mm"].get<double>() +
-                  (f["contour_um"].get<double>() + f["deflection_um"].get<double>()) / 1000,
-              1e-9);
+  EXPECT_NEAR(
+      f["predicted_mm"].get<double>(),
+      f["commanded_mm"].get<double>() + (f["contour_um"].get<double>() + f["deflection_um"].get<double>()) / 1000,
+      1e-9);
   EXPECT_LT(f["contour_um"].get<double>(), -1);  // the axes lag: v^2 / (r K^2) in the radius
   EXPECT_NEAR(f["difference_um"].get<double>(), 1000 * (9.99 - f["predicted_mm"].get<double>()), 1e-6);
   EXPECT_EQ(f["lower_mm"], 9.98);
@@ -102,10 +102,11 @@ TEST(CliFitParts, FitsAToolsDiameterAndWritesTheFolder) {
     }
   for (const char* name : {"machine.toml", "tools.toml", "material.toml", "report.html"})
     EXPECT_FALSE(tests::file_text(folder / (std::string("fitted/") + name)).empty()) << name;
-  folder.write("again.toml", "program = \"p.nc\"\nmachine = \"fitted/machine.toml\"\ntools = \"fitted/tools.toml\"\n"
-                             "[tool.1]\nfrom = 1\n[material]\nfile = \"fitted/material.toml\"\n[stock]\nbox_mm = [[-8, "
-                             "-8, -3], [8, 8, 0]]\n[simulation]\nvoxel_mm = 0.2\nrotation_step_deg = 4\n" +
-                                 kBore);
+  folder.write("again.toml",
+               "program = \"p.nc\"\nmachine = \"fitted/machine.toml\"\ntools = \"fitted/tools.toml\"\n"
+               "[tool.1]\nfrom = 1\n[material]\nfile = \"fitted/material.toml\"\n[stock]\nbox_mm = [[-8, "
+               "-8, -3], [8, 8, 0]]\n[simulation]\nvoxel_mm = 0.2\nrotation_step_deg = 4\n" +
+                   kBore);
   const auto again = run_camber(folder, "predict again.toml -o r");
   ASSERT_EQ(again.status, 0) << again.err;
   const json f = json::parse(tests::file_text(folder / "r/summary.json"))["features"][0];
@@ -122,9 +123,17 @@ TEST(CliFitParts, NamesThatNobodyHasAreRefused) {
             "and ending, or of a part, was expected [hold-out]\n");
 }
 
+TEST(CliFitParts, TheJobsOwnMachineIsNotOverwritten) {
+  const TempFolder folder;
+  write_job(folder, kBore + "measured_mm = [9.95]\n", "one.toml");
+  const auto run = run_camber(folder, "fit-parts one.toml -o .");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err, "./machine.toml: error: is an input of a job; another folder was expected [output-is-input]\n");
+}
+
 TEST(CliProtocol, TestPieceIsAJobThatChecks) {
   const TempFolder folder;
-  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n");
+  folder.write("machine.toml", "[axis.x]\nacceleration_mm_per_s2 = 500\n[axis.y]\n[axis.z]\n");
   ASSERT_EQ(run_camber(folder, "protocol --machine machine.toml --part --diameter-mm 8 -o piece").status, 0);
   const auto run = run_camber(folder, "check piece/test_piece.nc --job piece/job.toml --json c.json");
   EXPECT_EQ(run.status, 0) << run.err;
