@@ -481,21 +481,30 @@ class Fit {
     }
   }
 
+  std::size_t of_kind(UnknownKind kind) const {
+    return static_cast<std::size_t>(std::ranges::find(unknowns_, kind, &PartsUnknown::kind) - unknowns_.begin());
+  }
+
+  /// Variance of the sum of determined unknowns; nothing where none of them is.
+  std::optional<double> variance_of_sum(std::vector<std::size_t> ks) const {
+    std::erase_if(ks, [&](std::size_t k) { return !index_.contains(k); });
+    if (ks.empty()) return std::nullopt;
+    double var = 0;
+    for (const std::size_t a : ks)
+      for (const std::size_t b : ks) var += covariance_(index_.at(a), index_.at(b));
+    return std::max(0.0, var);
+  }
+
   void add_forces(std::size_t k, const std::map<std::size_t, double>& std_of) {
     tell("force_scale", "1", scaled(1, k, std_of), notes_[k]);
-    const auto edge = std::ranges::find(unknowns_, UnknownKind::edge, &PartsUnknown::kind);
-    const auto e = static_cast<std::size_t>(edge - unknowns_.begin());
     const Job &first = jobs_.front(), fitted = job_at(0, x_);
     for (const auto& c : machine::description(first.material.law).coefficients) {
       if (c.role == machine::CoefficientRole::shape || first.material.*c.field == 0) continue;
+      std::vector<std::size_t> scales{k};
+      if (c.role == machine::CoefficientRole::edge) scales.push_back(of_kind(UnknownKind::edge));
+      if (c.component == machine::Component::radial) scales.push_back(of_kind(UnknownKind::radial));
       Told t{fitted.material.*c.field, first.material.*c.field, std::nullopt};
-      const bool with_edge = c.role == machine::CoefficientRole::edge && e < unknowns_.size() && std_of.contains(e);
-      double var = std_of.contains(k) ? std_of.at(k) * std_of.at(k) : 0;
-      if (with_edge) {
-        var += std_of.at(e) * std_of.at(e);
-        if (std_of.contains(k)) var += 2 * covariance_(index_.at(k), index_.at(e));
-      }
-      if (std_of.contains(k) || with_edge) t.std_error = t.value * std::sqrt(std::max(0.0, var));
+      if (const auto var = variance_of_sum(scales)) t.std_error = std::abs(t.value) * std::sqrt(*var);
       tell(std::string(c.key), std::string(c.unit), t, notes_[k]);
     }
   }
@@ -515,7 +524,8 @@ class Fit {
       case UnknownKind::force:
         return add_forces(k, std_of);
       case UnknownKind::edge:
-        return tell("edge_scale", "1", scaled(1, k, std_of), notes_[k]);
+      case UnknownKind::radial:
+        return tell(u.name, "1", scaled(1, k, std_of), notes_[k]);
       case UnknownKind::root:
         return tell(u.name, "N/um", scaled(job.tools.at(u.tool).root_stiffness_N_per_mm / 1000, k, std_of), notes_[k]);
       case UnknownKind::root_rotation:

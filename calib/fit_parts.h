@@ -26,7 +26,7 @@ struct FitPartsOptions {
 };
 
 struct PartsParameter {
-  std::string name;  ///< key of machine.toml, "tool.5.KEY", "force_scale", "edge_scale", "offset.T5/short", "drift"
+  std::string name;  ///< key of machine.toml, "tool.5.KEY", "force_scale", "radial_scale", "edge_scale", "drift"
   std::string unit;
   double value = 0;  ///< in the unit of the file
   double start = 0;
@@ -78,8 +78,8 @@ struct FitPartsResult {
 ///
 /// with s_f = Feature::size_per_diameter(). Forces, stiffness and gains are scales (logarithms inside); one offset for
 /// every tool and every clamping of it (jobs whose [tool.N] are alike). Every parameter that the measurements do not
-/// determine, together with those before it (offsets, common gain, force, root stiffness, edge force, gains apart), to
-/// half of its value stays at its start.
+/// determine, together with those before it (offsets, common gain, force, radial force, root stiffness, edge force,
+/// gains apart), to half of its value stays at its start.
 ///
 /// Ceres solves a linear model of the predictions, whose slopes come from predictions of coarser() jobs; predictions at
 /// its solution correct it (Broyden), until the step is below a twentieth of the standard errors. The figures are of

@@ -50,12 +50,14 @@ bool has_gains(const Job& job) {
          std::isfinite(job.machine.axis[1].position_gain_per_s);
 }
 
-void scale_coefficients(Job& job, double factor, bool edges_alone) {
-  for (const auto& c : machine::description(job.material.law).coefficients) {
-    const bool edge = c.role == machine::CoefficientRole::edge;
-    if (c.role != machine::CoefficientRole::shape && (edge || !edges_alone)) job.material.*c.field *= factor;
-  }
+void scale_coefficients(Job& job, double factor, bool (*belongs)(const machine::Coefficient&)) {
+  for (const auto& c : machine::description(job.material.law).coefficients)
+    if (c.role != machine::CoefficientRole::shape && belongs(c)) job.material.*c.field *= factor;
 }
+
+bool any_coefficient(const machine::Coefficient&) { return true; }
+bool is_edge(const machine::Coefficient& c) { return c.role == machine::CoefficientRole::edge; }
+bool is_radial(const machine::Coefficient& c) { return c.component == machine::Component::radial; }
 
 bool has_edges(const Job& job) {
   for (const auto& c : machine::description(job.material.law).coefficients)
@@ -171,12 +173,15 @@ std::vector<PartsUnknown> unknowns_of(const std::vector<Job>& jobs, const std::v
            for (const int axis : {0, 1}) scale_gain(job, axis, std::exp(x));
          }});
   out.push_back({.kind = UnknownKind::force, .name = "force_scale", .of_job = all, .apply = [](Job& job, double x) {
-                   scale_coefficients(job, std::exp(x), false);
+                   scale_coefficients(job, std::exp(x), any_coefficient);
+                 }});
+  out.push_back({.kind = UnknownKind::radial, .name = "radial_scale", .of_job = all, .apply = [](Job& job, double x) {
+                   scale_coefficients(job, std::exp(x), is_radial);
                  }});
   add_stiffness(jobs, false, out);
   if (const auto edges = jobs_where(jobs, has_edges); any(edges))
     out.push_back({.kind = UnknownKind::edge, .name = "edge_scale", .of_job = edges, .apply = [](Job& job, double x) {
-                     scale_coefficients(job, std::exp(x), true);
+                     scale_coefficients(job, std::exp(x), is_edge);
                    }});
   if (any(gains))
     out.push_back(
@@ -201,6 +206,8 @@ std::string suggestion_for(const PartsUnknown& u, const PartsUnknown* other) {
       return "gain of X and Y apart: slot widths or distances along X and along Y, not round features alone";
     case UnknownKind::force:
       return fmt::format("{}{}: one slot or bore at three feeds with a long tool, in one clamping", u.name, from);
+    case UnknownKind::radial:
+      return "radial and tangential forces apart: walls cut with thin and with thick radial depths by a long tool";
     case UnknownKind::edge:
       return fmt::format(
           "edge and cutting forces apart: feeds per tooth over a range of three or more with a long tool");

@@ -8,7 +8,7 @@
 
 namespace camber::calib {
 
-enum class UnknownKind { offset, gain, gain_ratio, force, root, edge, root_rotation, drift };
+enum class UnknownKind { offset, gain, gain_ratio, force, radial, root, edge, root_rotation, drift };
 
 /// An unknown x, 0 at the start. Offsets and drift add to sizes (mm, mm a day); the others are scales: the job is
 /// changed by exp(x).
