@@ -81,7 +81,11 @@ Solution solve_linear(const MatrixXd& a, const VectorXd& b, double sigma, const 
   return out;
 }
 
-using Sizes = std::vector<std::optional<double>>;
+using Sizes = std::vector<std::optional<PredictedSize>>;
+
+constexpr double kNoBending_mm = 0.0005;
+
+bool of_motion(UnknownKind kind) { return kind == UnknownKind::gain || kind == UnknownKind::gain_ratio; }
 
 class Fit {
  public:
@@ -127,9 +131,15 @@ class Fit {
     ++out_.predictions;
     return options_.predict(job_at(j, x));
   }
-  Sizes predict_coarsely(std::size_t j, const VectorXd& x) {
+  Sizes predict_coarsely(std::size_t j, const VectorXd& x, bool rigid) {
     ++out_.predictions;
-    return options_.predict(coarser(job_at(j, x)));
+    Job job = coarser(job_at(j, x));
+    if (rigid) job.simulation.coupling = machine::Coupling::rigid;
+    return options_.predict(job);
+  }
+
+  bool bends(const Sizes& sizes) const {
+    return std::ranges::any_of(sizes, [](const auto& s) { return s && std::abs(s->deflection_mm) > kNoBending_mm; });
   }
 
   void show(const std::string& what, std::size_t done, std::size_t all) const {
@@ -161,25 +171,44 @@ class Fit {
     return std::ranges::any_of(fitted_, [&](std::size_t i) { return rows_[i].job == j; });
   }
 
-  /// Slopes of all sizes by the unknowns of the model, each by one more prediction.
+  /// Slopes of all sizes by the unknowns of the model.
   void find_slopes() {
     slope_.assign(jobs_.size(), {});
-    std::size_t done = 0;
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      show("slopes", j, jobs_.size());
       slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
       if (!is_fitted_job(j)) continue;
-      const Sizes here = predict_coarsely(j, x_);
-      for (std::size_t k = 0; k < unknowns_.size(); ++k, ++done) {
-        if (unknowns_[k].adds() || !unknowns_[k].of_job[j]) continue;
-        show("slopes", done, jobs_.size() * unknowns_.size());
-        const auto column = static_cast<Eigen::Index>(k);
-        VectorXd x = x_;
-        x[column] += kStep;
-        const Sizes there = predict_coarsely(j, x);
-        for (std::size_t f = 0; f < there.size(); ++f)
-          if (there[f] && here[f]) slope_[j](static_cast<Eigen::Index>(f), column) = (*there[f] - *here[f]) / kStep;
-      }
+      find_slopes_of(j, true);
+      if (bends(sizes_[j]))
+        find_slopes_of(j, false);
+      else
+        take_bending_as_slope(j);
     }
+  }
+
+  /// By the unknowns of the motion, or by those of forces and stiffness.
+  void find_slopes_of(std::size_t j, bool motion) {
+    std::optional<Sizes> here;
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      if (unknowns_[k].adds() || !unknowns_[k].of_job[j] || of_motion(unknowns_[k].kind) != motion) continue;
+      if (!here) here = predict_coarsely(j, x_, motion);
+      const auto column = static_cast<Eigen::Index>(k);
+      VectorXd x = x_;
+      x[column] += kStep;
+      const Sizes there = predict_coarsely(j, x, motion);
+      for (std::size_t f = 0; f < there.size(); ++f)
+        if (there[f] && (*here)[f])
+          slope_[j](static_cast<Eigen::Index>(f), column) = (there[f]->size_mm - (*here)[f]->size_mm) / kStep;
+    }
+  }
+
+  /// Bending goes with the force.
+  void take_bending_as_slope(std::size_t j) {
+    for (std::size_t k = 0; k < unknowns_.size(); ++k)
+      if (unknowns_[k].kind == UnknownKind::force)
+        for (std::size_t f = 0; f < sizes_[j].size(); ++f)
+          if (sizes_[j][f])
+            slope_[j](static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = sizes_[j][f]->deflection_mm;
   }
 
   double slope_of(const PartsRow& row, std::size_t k) const {
@@ -206,7 +235,7 @@ class Fit {
   }
 
   double predicted(const PartsRow& row) const {
-    double size = *sizes_[row.job][row.feature];
+    double size = sizes_[row.job][row.feature]->size_mm;
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
       if (unknowns_[k].adds()) size += slope_of(row, k) * x_[static_cast<Eigen::Index>(k)];
     return size;
@@ -338,7 +367,7 @@ class Fit {
         if (!there[f] || !sizes_[j][f]) continue;  // keeps its last prediction
         auto row = slope_[j].row(static_cast<Eigen::Index>(f));
         if (own.squaredNorm() > 1e-8)
-          row += (*there[f] - *sizes_[j][f] - row.dot(own)) / own.squaredNorm() * own.transpose();
+          row += (there[f]->size_mm - sizes_[j][f]->size_mm - row.dot(own)) / own.squaredNorm() * own.transpose();
         sizes_[j][f] = there[f];
       }
     }
@@ -620,13 +649,14 @@ Job coarser(Job job) {
   return job;
 }
 
-std::vector<std::optional<double>> predict_features(const Job& job) {
+std::vector<std::optional<PredictedSize>> predict_features(const Job& job) {
   Diagnostics found;
   const simulate::Setup setup = simulate::set_up(job, {}, {found, found, found});
   const simulate::Prediction p = simulate::predict_surface(job, setup.target, setup.program, {}, "");
-  std::vector<std::optional<double>> out;
+  std::vector<std::optional<PredictedSize>> out;
   for (const auto& r : inspect::evaluate(job.features, p.surface, job.simulation.voxel_mm))
-    out.push_back(r.predicted_mm);
+    out.push_back(r.predicted_mm ? std::optional(PredictedSize{*r.predicted_mm, r.deflection_um / 1000})
+                                 : std::nullopt);
   return out;
 }
 

@@ -9,11 +9,16 @@
 
 namespace camber::calib {
 
+struct PredictedSize {
+  double size_mm = 0;
+  double deflection_mm = 0;  ///< of it, what bending changes
+};
+
 /// Predicted sizes of a job's features, in their order; nothing where there is no prediction.
-using PredictFeatures = std::function<std::vector<std::optional<double>>(const machine::Job&)>;
+using PredictFeatures = std::function<std::vector<std::optional<PredictedSize>>(const machine::Job&)>;
 
 /// By a whole prediction (simulate::predict) and inspect::evaluate.
-std::vector<std::optional<double>> predict_features(const machine::Job& job);
+std::vector<std::optional<PredictedSize>> predict_features(const machine::Job& job);
 
 /// The job on a grid half as fine, with steps of rotation four times as wide (4 degrees at most): for slopes.
 machine::Job coarser(machine::Job job);
@@ -81,10 +86,11 @@ struct FitPartsResult {
 /// determine, together with those before it (offsets, common gain, force, radial force, root stiffness, edge force,
 /// gains apart), to half of its value stays at its start.
 ///
-/// Ceres solves a linear model of the predictions, whose slopes come from predictions of coarser() jobs; predictions at
-/// its solution correct it (Broyden), until the step is below a twentieth of the standard errors. The figures are of
-/// the last predictions, which are of the jobs as they are. Source of the update: Broyden, A class of methods for
-/// solving nonlinear simultaneous equations, Math. Comp. 19 (1965).
+/// Ceres solves a linear model of the predictions, whose slopes come from predictions of coarser() jobs
+/// (by gains in rigid coupling; none by forces and stiffness where bending changes sizes by less than half a
+/// micrometre); predictions at its solution correct it (Broyden), until the step is below a twentieth of the standard
+/// errors. The figures are of the last predictions, which are of the jobs as they are. Source of the update: Broyden, A
+/// class of methods for solving nonlinear simultaneous equations, Math. Comp. 19 (1965).
 ///
 /// Errors [parts-unmeasured]: no feature of any job has a measured value. Throws InputError.
 FitPartsResult fit_parts(const std::vector<machine::Job>& jobs, const FitPartsOptions& options);

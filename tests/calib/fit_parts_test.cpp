@@ -45,9 +45,12 @@ std::vector<double> sizes_of(const Job& job) {
   return out;
 }
 
-std::vector<std::optional<double>> predict(const Job& job) {
-  std::vector<std::optional<double>> out;
-  for (const double s : sizes_of(job)) out.emplace_back(s);
+std::vector<std::optional<PredictedSize>> predict(const Job& job) {
+  Job rigid = job;
+  rigid.tools.at(1).root_stiffness_N_per_mm = rigid.tools.at(1).youngs_modulus_MPa = 1e15;
+  const std::vector<double> sizes = sizes_of(job), unbent = sizes_of(rigid);
+  std::vector<std::optional<PredictedSize>> out;
+  for (std::size_t i = 0; i < sizes.size(); ++i) out.push_back(PredictedSize{sizes[i], sizes[i] - unbent[i]});
   return out;
 }
 
