@@ -10,6 +10,7 @@
 #include "api/job.h"
 #include "api/run.h"
 #include "machine/assumptions.h"
+#include "report/feature_results.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
 
@@ -96,8 +97,11 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done.result, done.job.compensation);
     result.diagnostics = found.all();
-    result.json = machine::with_assumptions(report::compensate_json(done.result, done.job.compensation, compute_s),
-                                            machine::assumptions(done.job));
+    result.json = machine::with_assumptions(
+        report::with_features(report::compensate_json(done.result, done.job.compensation, compute_s),
+                              {{"features_before", report::features_of(done.job, done.result.surface_before)},
+                               {"features_after", report::features_of(done.job, done.result.surface_after)}}),
+        machine::assumptions(done.job));
   });
   return result;
 }

@@ -12,6 +12,7 @@
 #include "api/run.h"
 #include "base/output_file.h"
 #include "machine/assumptions.h"
+#include "report/feature_results.h"
 #include "report/forces_csv.h"
 #include "report/mesh_file.h"
 #include "report/report_data.h"
@@ -142,7 +143,9 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
       feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.json = machine::with_assumptions(
-        report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts),
+        report::with_features(
+            report::predict_json(program, prediction, compute_s, prepared.traced_run(), result.doubts),
+            {{"features", report::features_of(job, prediction.surface)}}),
         machine::assumptions(job));
     result.diagnostics = found.all();
     if (request.folder.empty()) return;

@@ -19,6 +19,7 @@
 #include "compensate/trial.h"
 #include "machine/assumptions.h"
 #include "machine/job_programs.h"
+#include "report/feature_results.h"
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
@@ -66,6 +67,11 @@ api::CompensateRequest compensate_request(const CompensateArguments& arguments) 
 
 namespace {
 
+/// Beside the emitted program.
+std::string features_path(const std::string& output) {
+  return (std::filesystem::path(output).parent_path() / "features.csv").string();
+}
+
 /// `diagnostics`: of the job. `json`: the figures; empty where there are none. `emitted`: whether a program was
 /// written.
 int compensate_program(const machine::Job& given, Diagnostics diagnostics, const CompensateArguments& arguments,
@@ -109,7 +115,14 @@ int compensate_program(const machine::Job& given, Diagnostics diagnostics, const
   const bool written = !arguments.dry_run && (result.better || arguments.keep_anyway);
   if (written) try_to_write([&] { api::write_compensated(arguments.output, job, result); }, failed);
   emitted = written;
-  json = machine::with_assumptions(report::compensate_json(result, job.compensation, compute_s), assumed);
+  const auto features_before = report::features_of(job, result.surface_before);
+  const auto features_after = report::features_of(job, result.surface_after);
+  if (written && !features_after.empty())
+    try_to_write([&] { report::write_features_csv(features_path(arguments.output), features_after); }, failed);
+  json = machine::with_assumptions(
+      report::with_features(report::compensate_json(result, job.compensation, compute_s),
+                            {{"features_before", features_before}, {"features_after", features_after}}),
+      assumed);
   if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
   in_rounds = false;
   progress.show("writing the report");
@@ -117,7 +130,8 @@ int compensate_program(const machine::Job& given, Diagnostics diagnostics, const
   progress.clear();
 
   if (!options.quiet)
-    fmt::print("{}{}", machine::assumptions_text(assumed), report::compensate_text(result, compute_s));
+    fmt::print("{}{}{}", machine::assumptions_text(assumed), report::compensate_text(result, compute_s),
+               report::features_text(features_before, features_after));
   failed.throw_if_errors();
   const report::VerdictText verdict = report::verdict_text(result, job.compensation);
   if (!verdict.success) {

@@ -20,7 +20,10 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "camber time finish.nc --machine machine.toml --report time.html\n"
      "  camber time finish.nc --machine machine.toml --sweep axis.x.acceleration_mm_per_s2=300:1200:4"},
     {"fit-feed", "camber fit-feed --program trace_program.nc --trace trace.csv --machine machine.toml -o fitted.toml"},
-    {"protocol", "camber protocol --machine machine.toml -o programs"},
+    {"fit-parts", "camber fit-parts plate_01.toml plate_03.toml -o fitted"},
+    {"protocol",
+     "camber protocol --machine machine.toml -o programs\n  camber protocol --machine machine.toml --part -o "
+     "test_piece"},
     {"fit-force", "camber fit-force --log means.csv --job job.toml -o material.toml"},
     {"init", "camber init finish.nc --machine machine.toml --material S55C -o first_job.toml"},
     {"predict",

@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "machine/assumptions.h"
 #include "machine/job_programs.h"
+#include "report/feature_results.h"
 #include "report/summary.h"
 
 namespace camber::cli {
@@ -55,15 +56,19 @@ int predict_program(const machine::Job& job, Diagnostics diagnostics, const Pred
   Diagnostics failed;
   const std::vector<std::string> wrong = api::doubts_of(job, program, prediction);
   const std::vector<std::string> assumed = machine::assumptions(job);
+  const auto features = report::features_of(job, prediction.surface);
   const std::string& json = result = machine::with_assumptions(
-      report::predict_json(program, prediction, compute_s, prepared.traced_run(), wrong), assumed);
+      report::with_features(report::predict_json(program, prediction, compute_s, prepared.traced_run(), wrong),
+                            {{"features", features}}),
+      assumed);
   api::write_prediction(job, prepared, prediction, request, json, diagnostics, failed);
   if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
   progress.clear();
 
   if (!options.quiet)
-    fmt::print("{}{}", machine::assumptions_text(assumed),
-               report::predict_text(program, prediction, compute_s, prepared.traced_run()));
+    fmt::print("{}{}{}", machine::assumptions_text(assumed),
+               report::predict_text(program, prediction, compute_s, prepared.traced_run()),
+               report::features_text(features));
   failed.throw_if_errors();
   settle(of_cut, options);
   for (const std::string& sentence : wrong) print_error(sentence);

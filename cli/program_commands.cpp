@@ -559,6 +559,11 @@ void add_protocol(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto arguments = std::make_shared<ProtocolArguments>();
   command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
   command->add_option("-o,--output", arguments->folder, "folder for the programs")->required()->type_name("DIR");
+  auto* part = command->add_flag("--part", arguments->part, "a test piece to cut and measure, for fit-parts");
+  command->add_option("--diameter-mm", arguments->diameter_mm, "of its end mill")
+      ->check(CLI::Range(1.0, 50.0))
+      ->type_name("D")
+      ->needs(part);
   command->callback([arguments, &options, &chosen] {
     chosen = [arguments, &options] {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);

@@ -9,9 +9,12 @@ namespace camber::cli {
 struct ProtocolArguments {
   std::string machine;
   std::string folder;
+  bool part = false;       ///< a test piece for fit-parts instead
+  double diameter_mm = 6;  ///< of its end mill
 };
 
-/// Writes the programs, a .parts.csv beside each, and prints the purpose of each. Throws InputError.
+/// Writes the programs, a .parts.csv beside each, and prints the purpose of each; of a test piece its program, job and
+/// table of measured values. Throws InputError.
 int run_protocol(const ProtocolArguments& arguments, const GlobalOptions& options);
 
 }  // namespace camber::cli

@@ -10,6 +10,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "machine/assumptions.h"
+#include "report/feature_results.h"
 #include "report/summary.h"
 
 namespace camber::cli {
@@ -38,15 +39,20 @@ int merge_and_write(const machine::Job& job, const api::PartKey& key, int round,
   std::vector<std::string> wrong = api::doubts_of(job, program, merged.prediction);
   if (!merged.doubt.empty()) wrong.push_back(merged.doubt);
   const std::vector<std::string> assumed = machine::assumptions(job);
+  const auto features = report::features_of(job, merged.prediction.surface);
   const std::string json = machine::with_assumptions(
-      api::with_sections(report::predict_json(program, merged.prediction, compute_s, nullptr, wrong), merged.figures),
+      report::with_features(
+          api::with_sections(report::predict_json(program, merged.prediction, compute_s, nullptr, wrong),
+                             merged.figures),
+          {{"features", features}}),
       assumed);
   Diagnostics failed;
   api::write_prediction(job, merged.prepared, merged.prediction, request, json, found, failed);
   if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, json); }, failed);
   progress.clear();
   if (!options.quiet)
-    fmt::print("{}{}", machine::assumptions_text(assumed), report::predict_text(program, merged.prediction, compute_s));
+    fmt::print("{}{}{}", machine::assumptions_text(assumed),
+               report::predict_text(program, merged.prediction, compute_s), report::features_text(features));
   failed.throw_if_errors();
   settle(of_cut, options);
   for (const std::string& sentence : wrong) print_error(sentence);

@@ -174,6 +174,7 @@ machine::Job softened(const machine::Job& job, double scale) {
     tool.youngs_modulus_MPa /= scale;
     tool.root_stiffness_N_per_mm /= scale;
     tool.root_axial_stiffness_N_per_mm /= scale;
+    tool.root_rotational_stiffness_Nmm_per_rad /= scale;
     if (tool.axial_stiffness_N_per_mm) *tool.axial_stiffness_N_per_mm /= scale;
   }
   for (auto& axis : out.machine.axis) axis.stiffness_N_per_mm /= scale;

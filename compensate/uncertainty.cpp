@@ -101,6 +101,7 @@ machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::ve
       tool.youngs_modulus_MPa /= 1 + group.fraction;
       tool.root_stiffness_N_per_mm /= 1 + group.fraction;
       tool.root_axial_stiffness_N_per_mm /= 1 + group.fraction;
+      tool.root_rotational_stiffness_Nmm_per_rad /= 1 + group.fraction;
       if (tool.axial_stiffness_N_per_mm) *tool.axial_stiffness_N_per_mm /= 1 + group.fraction;
     }
   for (const auto& p : group.parameters) {

@@ -9,7 +9,8 @@ namespace camber::deflection {
 namespace {
 
 double flute_length(const machine::Tool& tool) {
-  return std::min(tool.flute_length_mm.value_or(tool.overhang_mm), tool.overhang_mm);
+  const double typical = tool.typical_flute_mm > 0 ? tool.typical_flute_mm : tool.overhang_mm;
+  return std::min(tool.flute_length_mm.value_or(typical), tool.overhang_mm);
 }
 
 /// Diameter that bends at a height: of the fluted part the effective one.
@@ -31,18 +32,18 @@ double bending_diameter_mm(const machine::Tool& tool, double z) {
 
 }  // namespace
 
-Beam::Beam(std::vector<Section> sections, double root, double root_axial)
-    : sections_(std::move(sections)), root_compliance_mm_per_N_(root), root_axial_compliance_mm_per_N_(root_axial) {}
+Beam::Beam(std::vector<Section> sections, const Root& root) : sections_(std::move(sections)), root_(root) {}
 
 double Beam::axial_compliance_mm_per_N(double z_force) const {
-  double w = root_axial_compliance_mm_per_N_;
+  double w = root_.axial_mm_per_N;
   for (const auto& s : sections_) w += std::max(0.0, s.to_mm - std::max(s.from_mm, z_force)) / s.axial_stiffness_N;
   return w;
 }
 
 double Beam::compliance_mm_per_N(double a, double b) const {
   const double higher = std::max(a, b);
-  double w = root_compliance_mm_per_N_;
+  const double face = sections_.empty() ? 0 : sections_.back().to_mm;
+  double w = root_.lateral_mm_per_N + root_.rotational_rad_per_Nmm * std::max(0.0, face - a) * std::max(0.0, face - b);
   for (const auto& s : sections_) {
     const double lo = std::max(s.from_mm, higher), hi = s.to_mm;
     if (hi <= lo) continue;
@@ -87,7 +88,9 @@ Beam beam_of(const machine::Tool& tool) {
   add(flutes, neck);
   add(neck, tool.overhang_mm);
   const double given = tool.axial_stiffness_N_per_mm ? 1 / *tool.axial_stiffness_N_per_mm : 0.0;
-  return Beam(std::move(sections), 1 / tool.root_stiffness_N_per_mm, given + 1 / tool.root_axial_stiffness_N_per_mm);
+  return Beam(std::move(sections), {.lateral_mm_per_N = 1 / tool.root_stiffness_N_per_mm,
+                                    .axial_mm_per_N = given + 1 / tool.root_axial_stiffness_N_per_mm,
+                                    .rotational_rad_per_Nmm = 1 / tool.root_rotational_stiffness_Nmm_per_rad});
 }
 
 }  // namespace camber::deflection

@@ -17,13 +17,18 @@ class Beam {
     double axial_stiffness_N = std::numeric_limits<double>::infinity();  ///< E A
   };
 
-  Beam(std::vector<Section> sections, double root_compliance_mm_per_N, double root_axial_compliance_mm_per_N = 0);
+  /// Compliances of the root, at the holder face.
+  struct Root {
+    double lateral_mm_per_N = 0, axial_mm_per_N = 0, rotational_rad_per_Nmm = 0;
+  };
+
+  Beam(std::vector<Section> sections, const Root& root);
 
   /// Deflection at height z_out under a unit lateral force at height z_force, mm/N:
-  /// w = 1/k_root + sum over the sections of the integral of (z - z_out)(z - z_force) / (E I) dz from the higher
-  /// of the two heights to the holder, and of 1 / (kappa G A) dz where shear counts. Euler-Bernoulli, with shear
-  /// Timoshenko (Castigliano; both parts exact); symmetric in its arguments (Maxwell). Heights beyond the holder face
-  /// are treated as the face.
+  /// w = 1/k_root + (L - z_out)(L - z_force) / k_rotational + sum over the sections of the integral of
+  /// (z - z_out)(z - z_force) / (E I) dz from the higher of the two heights to the holder face L, and of
+  /// 1 / (kappa G A) dz where shear counts. Euler-Bernoulli, with shear Timoshenko (Castigliano; both parts exact);
+  /// symmetric in its arguments (Maxwell). Heights beyond the holder face are treated as the face.
   double compliance_mm_per_N(double z_out_mm, double z_force_mm) const;
 
   /// How far the tip yields along the axis under a unit axial force at height z_force, mm/N: 1/k_root + sum over the
@@ -36,7 +41,7 @@ class Beam {
 
  private:
   std::vector<Section> sections_;
-  double root_compliance_mm_per_N_, root_axial_compliance_mm_per_N_;
+  Root root_;
 };
 
 /// Fluted part with the effective diameter (of a tapered cutter the diameter at each height, in slices), then the neck,

@@ -68,7 +68,7 @@ struct Junction {
 double axis_speed_limit(const Segment& s, const Vec3& velocity) {
   if (s.radius_mm == 0) return limit_along(s.along, velocity);
   const Vec3 normal = s.along.cross(s.across);
-  const double in_plane = s.radius_mm * s.turn_rad_per_mm;  // fraction of the speed that lies in the plane
+  const double in_plane = s.in_plane();
   return std::min(limit_in_plane(normal, velocity) / in_plane, limit_along(s.rise, velocity));
 }
 
@@ -77,7 +77,7 @@ double axis_speed_limit(const Segment& s, const Vec3& velocity) {
 /// sqrt(1 - (v^2 / (r a))^2) with the axes' top speed v.
 void set_arc_limits(Segment& s, const Vec3& acceleration, const machine::Control& control) {
   const Vec3 normal = s.along.cross(s.across);
-  const double in_plane = s.radius_mm * s.turn_rad_per_mm;
+  const double in_plane = s.in_plane();
   const double plane = std::min(limit_in_plane(normal, acceleration), control.path_acceleration_mm_per_s2);
   const double a = std::min({limit_in_plane(normal, acceleration) / in_plane, limit_along(s.rise, acceleration),
                              control.path_acceleration_mm_per_s2});
@@ -263,8 +263,9 @@ class Builder {
       e.segment = line_segment(from_mm, to_mm);
     } else {
       const nc::Arc& arc = program_.arcs[move.arc];
-      e.segment =
-          arc_segment(from_mm, arc.center_mm, arc.normal, arc.sweep_rad, arc.normal.dot(move.end_mm - move.start_mm));
+      const auto radius_at = [&](const Vec3& p) { return arc.normal.cross(p - arc.center_mm).norm(); };
+      e.segment = arc_segment(from_mm, arc.center_mm, arc.normal, arc.sweep_rad,
+                              arc.normal.dot(move.end_mm - move.start_mm), radius_at(to_mm) - radius_at(from_mm));
     }
     if (turns_) set_turn(e, from_mm);
     e.segment.mode = static_cast<std::uint8_t>(mode_of(machine_, state));

@@ -17,6 +17,9 @@ struct Segment {
   Vec3 rise = Vec3::Zero();    ///< arc: mm along the normal for each mm of path (helix)
   double radius_mm = 0;        ///< 0: a line
   double turn_rad_per_mm = 0;  ///< arc: angle turned for each mm of path
+  /// Arc: mm by which the radius grows for each mm of path. Programs round the ends of an arc, so that its two radii
+  /// differ: controls spread the difference along the arc, as nc::point_at does.
+  double radius_growth = 0;
   double length_mm = 0;
 
   double speed_limit_mm_per_s = 0;
@@ -41,16 +44,20 @@ struct Segment {
   double overlap_speed_mm_per_s = machine::kNoLimit;
   std::shared_ptr<const Turn> turn{};  ///< of every segment of a program with rotary motion; null: without
 
+  /// Of an arc's motion, the fraction within the plane of the turn.
+  double in_plane() const;
   Vec3 point_at(double s_mm) const;
-  Vec3 direction_at(double s_mm) const;  ///< unit
+  /// Unit, but for the radius' growth of a rounded arc, which turns no corner.
+  Vec3 direction_at(double s_mm) const;
 };
 
 /// A straight line; length 0 for equal points.
 Segment line_segment(const Vec3& from_mm, const Vec3& to_mm);
 
-/// An arc that leaves `from_mm` and turns by sweep_rad about `normal` through `center_mm`; `rise_mm` along the
-/// normal over the whole sweep.
-Segment arc_segment(const Vec3& from_mm, const Vec3& center_mm, const Vec3& normal, double sweep_rad, double rise_mm);
+/// An arc that leaves `from_mm` and turns by sweep_rad about `normal` through `center_mm`; `rise_mm` along the normal
+/// and `growth_mm` of its radius over the whole sweep.
+Segment arc_segment(const Vec3& from_mm, const Vec3& center_mm, const Vec3& normal, double sweep_rad, double rise_mm,
+                    double growth_mm = 0);
 
 /// The part of a segment between two lengths along it; the limits stay.
 Segment part_of(const Segment& segment, double from_s_mm, double to_s_mm);

@@ -10,6 +10,7 @@
 
 #include "base/diagnostics.h"
 #include "base/geometry.h"
+#include "machine/features.h"
 #include "machine/machine.h"
 #include "machine/material.h"
 
@@ -40,6 +41,7 @@ struct Tool {
   double runout_angle_rad = 0;            ///< from tooth 1 to the run-out, against the rotation
   double overhang_mm = 0;                 ///< holder face to tip
   std::optional<double> flute_length_mm;  ///< not given: the whole overhang is fluted
+  double typical_flute_mm = 0;            ///< without flute_length_mm: of the part that bends as fluted; 0: all of it
   double neck_diameter_mm = 0;            ///< 0: no neck
   double neck_length_mm = 0;              ///< from the flutes up
   double shank_diameter_mm = 0;           ///< 0: as the cutter
@@ -47,9 +49,11 @@ struct Tool {
   bool shear = false;                     ///< include shear deflection (Timoshenko)
   double effective_diameter_ratio = 0.8;  ///< bending diameter of the fluted part / diameter
   double youngs_modulus_MPa = 600000;
-  double root_stiffness_N_per_mm = kNoLimit;         ///< lateral, holder and spindle
-  double root_axial_stiffness_N_per_mm = kNoLimit;   ///< along the axis, holder and spindle
+  double root_stiffness_N_per_mm = kNoLimit;                ///< lateral, holder and spindle
+  double root_axial_stiffness_N_per_mm = kNoLimit;          ///< along the axis, holder and spindle
+  double root_rotational_stiffness_Nmm_per_rad = kNoLimit;  ///< about the axes across the tool, at the holder face
   std::optional<double> axial_stiffness_N_per_mm{};  ///< of the tool itself along its axis; empty: from its geometry
+  std::vector<std::string> typical{};  ///< keys that nobody gave, with the typical values that stand for them
 };
 
 struct Box {
@@ -169,6 +173,8 @@ struct Job {
   Diagnostic voxel_place;
   CompensationSettings compensation;
   std::optional<AdaptSettings> adapt{};
+  std::vector<Feature> features{};  ///< that predict and compensate evaluate
+  std::optional<ModelError> model_error{};
 };
 
 /// Reads the job and its machine file. Throws InputError with file:line:column.

@@ -41,6 +41,8 @@ inline constexpr std::array kToolKeys{
     NumberKey<Tool>{"root_stiffness_N_per_um", &Tool::root_stiffness_N_per_mm, kPositiveOrInf, kNewtonsPerMicrometre},
     NumberKey<Tool>{"root_axial_stiffness_N_per_um", &Tool::root_axial_stiffness_N_per_mm, kPositiveOrInf,
                     kNewtonsPerMicrometre},
+    NumberKey<Tool>{"root_rotational_stiffness_Nm_per_rad", &Tool::root_rotational_stiffness_Nmm_per_rad,
+                    kPositiveOrInf, kNewtonMetres},
     NumberKey<Tool>{"runout_um", &Tool::runout_mm, kNotNegative, kMicrometres},
     NumberKey<Tool>{"runout_angle_deg", &Tool::runout_angle_rad, kRunoutAngleDeg, kDegrees},
 };

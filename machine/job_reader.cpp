@@ -271,6 +271,8 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
   }
   if (auto compensation = top.table("compensation")) read_compensation(*compensation, job.tools, job.compensation);
   if (auto adapt = top.table("adapt")) job.adapt = read_adapt(*adapt);
+  job.features = read_features(top, folder);
+  job.model_error = read_model_error(top);
 }
 
 }  // namespace

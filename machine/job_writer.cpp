@@ -5,6 +5,7 @@
 #include "machine/assumptions.h"
 #include "machine/job_keys.h"
 #include "machine/material_reader.h"
+#include "machine/tool_reader.h"
 
 namespace camber::machine {
 namespace {
@@ -107,6 +108,8 @@ std::string adapt_text(const AdaptSettings& a) {
 
 }  // namespace
 
+std::string tool_toml(const Tool& tool) { return tool_text(tool, {}); }
+
 std::string to_toml(const Job& job) {
   const AssumedKeys assumed = assumed_keys(job.path);
   std::string out = toml_line("program", job.program) + toml_line("machine", job.machine_path);
@@ -121,7 +124,8 @@ std::string to_toml(const Job& job) {
     out += toml_line("collisions", kCollisionsWords[static_cast<std::size_t>(*job.simulation.collisions)]);
   if (job.simulation.max_memory_GB) out += toml_line("max_memory_GB", *job.simulation.max_memory_GB, kAsIs);
   out += compensation_text(job.compensation);
-  return job.adapt ? out + adapt_text(*job.adapt) : out;
+  if (job.adapt) out += adapt_text(*job.adapt);
+  return out + features_text(job.features, job.model_error);
 }
 
 }  // namespace camber::machine

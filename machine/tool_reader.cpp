@@ -96,6 +96,21 @@ void read_holder(TomlTable& table, Tool& tool) {
     tool.holder.push_back({row[0], row[1], row[2]});
 }
 
+/// What nobody gave and every tool has: typical values (docs/measured-parts.md). A rigid clamp is never true; a cutter
+/// has flutes along about three diameters, above which it is a shank.
+void take_typical_values(const TomlTable& table, Tool& tool) {
+  constexpr double kRoot_N_per_mm = 20000, kFluteDiameters = 3;
+  if (!table.has("root_stiffness_N_per_um")) {
+    tool.root_stiffness_N_per_mm = kRoot_N_per_mm;
+    tool.typical.emplace_back("root_stiffness_N_per_um = 20");
+  }
+  const bool milling = tool.type == ToolType::ball || tool.type == ToolType::flat || tool.type == ToolType::bull;
+  const double flutes = kFluteDiameters * tool.diameter_mm;
+  if (!milling || table.has("flute_length_mm") || table.has("shank_diameter_mm") || tool.overhang_mm <= flutes) return;
+  tool.typical_flute_mm = flutes;
+  tool.typical.push_back(fmt::format("flute_length_mm = {:.6g}", flutes));
+}
+
 void read_lengths(TomlTable& table, Tool& tool) {
   tool.flute_length_mm = table.optional_number("flute_length_mm", kPositive);
   if (const auto stiffness = table.optional_number("axial_stiffness_N_per_um", kPositiveOrInf))
@@ -143,6 +158,7 @@ Tool read_tool(TomlTable table, int number) {
   read_holder(table, tool);
   if (tool.flutes > 0) read_teeth(table, tool);
   check_overhang(table, tool);
+  take_typical_values(table, tool);
   table.ignore("assumed");  // assumptions.h
   if (type) check_profile(table, tool);
   table.finish();

@@ -1,5 +1,7 @@
 #pragma once
 // One [tool.N] table of a job.
+#include <string>
+
 #include "machine/job.h"
 #include "machine/toml_table.h"
 
@@ -7,5 +9,8 @@ namespace camber::machine {
 
 /// Problems go to the table's diagnostics; the tool is then not fit for use.
 Tool read_tool(TomlTable table, int number);
+
+/// The tool as such a table, with its heading.
+std::string tool_toml(const Tool& tool);
 
 }  // namespace camber::machine

@@ -165,6 +165,12 @@ TextTable tools_table(const Job& job) {
   add("root stiffness, N/µm", [](const Tool& t) {
     return t.root_stiffness_N_per_mm == kAny ? std::string("rigid") : value_text(t.root_stiffness_N_per_mm / 1000);
   });
+  if (std::ranges::any_of(job.tools,
+                          [](const auto& t) { return t.second.root_rotational_stiffness_Nmm_per_rad < kAny; }))
+    add("root stiffness about axes across it, Nm/rad", [](const Tool& t) {
+      const double k = t.root_rotational_stiffness_Nmm_per_rad;
+      return k == kAny ? std::string("rigid") : value_text(k / 1000);
+    });
   add("root stiffness along the axis, N/µm", [](const Tool& t) {
     return t.root_axial_stiffness_N_per_mm == kAny ? std::string("rigid")
                                                    : value_text(t.root_axial_stiffness_N_per_mm / 1000);

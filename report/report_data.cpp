@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "report/feature_results.h"
 #include "report/model_tables.h"
 #include "report/page_tables.h"
 #include "report/summary.h"
@@ -312,6 +313,8 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   add_times(data, job, c);
   add_worst_lines(data, data.compared ? after.program : before.program, data.compared);
   for (TextTable& table : compensation_tables(c)) data.tables.push_back(std::move(table));
+  add_features(data, features_of(job, c.surface_before), "Features before the compensation");
+  add_features(data, features_of(job, c.surface_after), "Features after the compensation");
   add_texts(data, job, diagnostics, {});
   const VerdictText verdict = verdict_text(c, job.compensation);
   data.verdict = PageVerdict{verdict.success, verdict.headline, verdict.reasons};

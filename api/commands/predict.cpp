@@ -16,6 +16,7 @@
 #include "checks/plausibility.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
+#include "report/feature_results.h"
 #include "report/forces_at_csv.h"
 #include "report/forces_csv.h"
 #include "report/mesh_file.h"
@@ -133,6 +134,8 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
       report::write_error_mesh(folder / "form_error_mesh.ply", report::error_mesh(points, job.simulation.voxel_mm),
                                prediction.form_error_um.p95);
     });
+  const auto features = report::features_of(job, prediction.surface);
+  if (!features.empty()) others.run([&] { report::write_features_csv(folder / "features.csv", features); });
   others.run_and_wait([&] {
     prediction.machined->unshare();  // what is kept once takes its room again
     prediction.machined->save(folder / "stock.vdb");
@@ -140,6 +143,7 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
     return_freed_memory();
     auto feed = write_feed(program, traced, job, folder / "feed.csv", stage);
     report::ReportData page = report::predict_report(job, program, prediction, stock, std::move(feed), diagnostics);
+    report::add_features(page, features, "Features");
     if (traced) report::add_traced(page, program, prediction, *traced, report::rows_of_program(program, job.machine));
     report::write_html_report(folder / "report.html", page);
   });

@@ -41,6 +41,22 @@ TEST(Beam, SteppedBarAddsTheBendingOfItsParts) {
   EXPECT_NEAR(beam_of(tool).compliance_mm_per_N(0, 0), expected, 1e-12);
 }
 
+TEST(Beam, RootThatTiltsAddsTheProductOfTheLevers) {
+  machine::Tool tool = testing::make_tool(machine::ToolType::flat, 10, 4, 30);
+  const double rigid = beam_of(tool).compliance_mm_per_N(3, 8);
+  tool.root_rotational_stiffness_Nmm_per_rad = 5e6;
+  EXPECT_NEAR(beam_of(tool).compliance_mm_per_N(3, 8), rigid + 37.0 * 32.0 / 5e6, 1e-15);
+}
+
+TEST(Beam, TypicalFlutesBendAsFlutesAndTheRestAsAShank) {
+  machine::Tool tool = testing::make_tool(machine::ToolType::flat, 6, 4, 30), given = tool;
+  tool.typical_flute_mm = 18;
+  given.flute_length_mm = 18;
+  EXPECT_EQ(beam_of(tool).compliance_mm_per_N(0, 0), beam_of(given).compliance_mm_per_N(0, 0));
+  EXPECT_LT(beam_of(tool).compliance_mm_per_N(0, 0),
+            0.7 * beam_of(testing::make_tool(machine::ToolType::flat, 6, 4, 30)).compliance_mm_per_N(0, 0));
+}
+
 TEST(Beam, FirstFrequencyOfAUniformBarIsWithinTwoPercentOfTheClosedForm) {
   machine::Tool tool = testing::make_tool(machine::ToolType::flat, 10, 4, 30);
   tool.effective_diameter_ratio = 1;

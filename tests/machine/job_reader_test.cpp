@@ -59,6 +59,15 @@ std::string with_more(std::string_view lines) {
   return out;
 }
 
+TEST(JobReader, WhatIsWrittenIsNoTypicalValue) {
+  const auto [job, messages] =
+      read(with("overhang_mm = 40.0\n", "overhang_mm = 40.0\nroot_stiffness_N_per_um = inf\nflute_length_mm = 40\n"));
+  EXPECT_EQ(messages, "");
+  EXPECT_TRUE(job.tools.at(1).typical.empty());
+  EXPECT_EQ(job.tools.at(1).root_stiffness_N_per_mm, kNoLimit);
+  EXPECT_EQ(job.tools.at(1).typical_flute_mm, 0);
+}
+
 TEST(JobReader, ReadsTheSmallestJobWithDefaults) {
   const auto [job, messages] = read(kJob);
   EXPECT_EQ(messages, "");
@@ -67,7 +76,10 @@ TEST(JobReader, ReadsTheSmallestJobWithDefaults) {
   EXPECT_EQ(job.tools.at(1).number, 1);
   EXPECT_EQ(job.tools.at(1).flutes, 2);
   EXPECT_FALSE(job.tools.at(1).flute_length_mm);
-  EXPECT_EQ(job.tools.at(1).root_stiffness_N_per_mm, kNoLimit);
+  EXPECT_EQ(job.tools.at(1).root_stiffness_N_per_mm, 20000);
+  EXPECT_EQ(job.tools.at(1).typical_flute_mm, 18);
+  EXPECT_EQ(job.tools.at(1).typical,
+            (std::vector<std::string>{"root_stiffness_N_per_um = 20", "flute_length_mm = 18"}));
   EXPECT_EQ(job.machine.spindle.max_rpm, 12000);
   EXPECT_EQ(job.material.ktc_MPa, 2000);
   EXPECT_EQ(job.stock.box->min_mm.z(), -20);

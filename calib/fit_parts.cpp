@@ -1,0 +1,667 @@
+#include "calib/fit_parts.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include "calib/parts_unknowns.h"
+#include "inspect/evaluate.h"
+#include "inspect/model_error.h"
+#include "machine/force_law.h"
+#include "machine/set_number.h"
+#include "nc/interpreter.h"
+#include "simulate/rotary_motion.h"
+#include "simulate/setup.h"
+
+namespace camber::calib {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using machine::Job;
+
+constexpr double kStep = 0.2;            // of a logarithm, for slopes: large against the noise of a grid
+constexpr double kLongest = 0.7;         // of a logarithm, a round
+constexpr double kDetermined = 0.5;      // greatest standard error of a logarithm
+constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day
+constexpr double kNoise_mm = 0.002;      // of a measured size, before anything is known of it
+constexpr double kLeastNoise_mm = 0.0002;
+constexpr double kHuber = 2.5;    // standard deviations: normal noise stays least squares
+constexpr double kAtRest = 0.05;  // of a standard error
+constexpr double kAlike = 0.9;    // cosine between two columns that cannot be told apart
+
+/// Robust linear least squares by Ceres: residual (row . x - b) / sigma.
+class LinearRow final : public ceres::CostFunction {
+ public:
+  LinearRow(VectorXd row, double value) : row_(std::move(row)), value_(value) {
+    set_num_residuals(1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(row_.size()));
+  }
+  bool Evaluate(const double* const* x, double* residual, double** slope) const override {
+    residual[0] = row_.dot(Eigen::Map<const VectorXd>(x[0], row_.size())) - value_;
+    if (slope && slope[0]) Eigen::Map<VectorXd>(slope[0], row_.size()) = row_;
+    return true;
+  }
+
+ private:
+  VectorXd row_;
+  double value_;
+};
+
+struct Solution {
+  VectorXd x;
+  bool converged = false;
+};
+
+Solution solve_linear(const MatrixXd& a, const VectorXd& b, double sigma, const VectorXd& longest) {
+  Solution out{VectorXd::Zero(a.cols())};
+  ceres::Problem problem;
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    problem.AddResidualBlock(new LinearRow(a.row(i).transpose() / sigma, b[i] / sigma), new ceres::HuberLoss(kHuber),
+                             out.x.data());
+  for (int k = 0; k < a.cols(); ++k) {
+    problem.SetParameterLowerBound(out.x.data(), k, -longest[k]);
+    problem.SetParameterUpperBound(out.x.data(), k, longest[k]);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 100;
+  options.function_tolerance = options.parameter_tolerance = 1e-12;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  out.converged = summary.IsSolutionUsable();
+  return out;
+}
+
+using Sizes = std::vector<std::optional<PredictedSize>>;
+
+constexpr double kNoBending_mm = 0.0005;
+
+bool of_motion(UnknownKind kind) { return kind == UnknownKind::gain || kind == UnknownKind::gain_ratio; }
+
+class Fit {
+ public:
+  Fit(const std::vector<Job>& jobs, const FitPartsOptions& options)
+      : jobs_(jobs),
+        options_(options),
+        rows_(rows_of(jobs, options.hold_out)),
+        unknowns_(unknowns_of(jobs, rows_)),
+        x_(VectorXd::Zero(size())),
+        active_(unknowns_.size(), true) {}
+
+  FitPartsResult run() {
+    if (rows_.empty())
+      fail_on_file(jobs_.empty() ? std::string("fit-parts") : jobs_.front().path,
+                   "no feature has a measured value; [[feature]] with measured_mm or measured was expected",
+                   "parts-unmeasured");
+    sizes_ = predict_all();
+    leave_out_unpredicted();
+    if (fitted_.empty()) {
+      out_.message = "no measured feature has a prediction";
+      return finish();
+    }
+    find_slopes();
+    choose(kNoise_mm);
+    do {
+      iterate();
+    } while (drop_undetermined());
+    return finish();
+  }
+
+ private:
+  Eigen::Index size() const { return static_cast<Eigen::Index>(unknowns_.size()); }
+
+  Job job_at(std::size_t j, const VectorXd& x) const {
+    Job job = jobs_[j];
+    for (std::size_t k = 0; k < unknowns_.size(); ++k)
+      if (!unknowns_[k].adds() && unknowns_[k].of_job[j] && x[static_cast<Eigen::Index>(k)] != 0)
+        unknowns_[k].apply(job, x[static_cast<Eigen::Index>(k)]);
+    return job;
+  }
+
+  Sizes predict(std::size_t j, const VectorXd& x) {
+    ++out_.predictions;
+    return options_.predict(job_at(j, x));
+  }
+  Sizes predict_coarsely(std::size_t j, const VectorXd& x, bool rigid) {
+    ++out_.predictions;
+    Job job = coarser(job_at(j, x));
+    if (rigid) job.simulation.coupling = machine::Coupling::rigid;
+    return options_.predict(job);
+  }
+
+  bool bends(const Sizes& sizes) const {
+    return std::ranges::any_of(sizes, [](const auto& s) { return s && std::abs(s->deflection_mm) > kNoBending_mm; });
+  }
+
+  void show(const std::string& what, std::size_t done, std::size_t all) const {
+    if (options_.progress) options_.progress(what, static_cast<double>(done) / static_cast<double>(all));
+  }
+
+  std::vector<Sizes> predict_all() {
+    std::vector<Sizes> out;
+    for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      show("predicting all parts", j, jobs_.size());
+      out.push_back(predict(j, x_));
+    }
+    return out;
+  }
+
+  void leave_out_unpredicted() {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (sizes_[rows_[i].job][rows_[i].feature]) {
+        if (!rows_[i].held_out) fitted_.push_back(i);
+        continue;
+      }
+      const std::string text =
+          fmt::format("{}: {}", job_name(jobs_[rows_[i].job]), jobs_[rows_[i].job].features[rows_[i].feature].name);
+      if (std::ranges::find(out_.left_out, text) == out_.left_out.end()) out_.left_out.push_back(text);
+    }
+  }
+
+  bool is_fitted_job(std::size_t j) const {
+    return std::ranges::any_of(fitted_, [&](std::size_t i) { return rows_[i].job == j; });
+  }
+
+  /// Slopes of all sizes by the unknowns of the model.
+  void find_slopes() {
+    slope_.assign(jobs_.size(), {});
+    for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      show("slopes", j, jobs_.size());
+      slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
+      if (!is_fitted_job(j)) continue;
+      find_slopes_of(j, true);
+      if (bends(sizes_[j]))
+        find_slopes_of(j, false);
+      else
+        take_bending_as_slope(j);
+    }
+  }
+
+  /// By the unknowns of the motion, or by those of forces and stiffness.
+  void find_slopes_of(std::size_t j, bool motion) {
+    std::optional<Sizes> here;
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      if (unknowns_[k].adds() || !unknowns_[k].of_job[j] || of_motion(unknowns_[k].kind) != motion) continue;
+      if (!here) here = predict_coarsely(j, x_, motion);
+      const auto column = static_cast<Eigen::Index>(k);
+      VectorXd x = x_;
+      x[column] += kStep;
+      const Sizes there = predict_coarsely(j, x, motion);
+      for (std::size_t f = 0; f < there.size(); ++f)
+        if (there[f] && (*here)[f])
+          slope_[j](static_cast<Eigen::Index>(f), column) = (there[f]->size_mm - (*here)[f]->size_mm) / kStep;
+    }
+  }
+
+  /// Bending goes with the force.
+  void take_bending_as_slope(std::size_t j) {
+    for (std::size_t k = 0; k < unknowns_.size(); ++k)
+      if (unknowns_[k].kind == UnknownKind::force)
+        for (std::size_t f = 0; f < sizes_[j].size(); ++f)
+          if (sizes_[j][f])
+            slope_[j](static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = sizes_[j][f]->deflection_mm;
+  }
+
+  double slope_of(const PartsRow& row, std::size_t k) const {
+    const PartsUnknown& u = unknowns_[k];
+    if (u.kind == UnknownKind::offset)
+      return row.clamping == u.clamping && row.tool == u.tool ? row.size_per_diameter : 0;
+    if (u.kind == UnknownKind::drift) return row.day.value_or(0);
+    return slope_[row.job](static_cast<Eigen::Index>(row.feature), static_cast<Eigen::Index>(k));
+  }
+
+  std::vector<std::size_t> active() const {
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < active_.size(); ++k)
+      if (active_[k]) out.push_back(k);
+    return out;
+  }
+
+  MatrixXd columns(const std::vector<std::size_t>& ks) const {
+    MatrixXd a(static_cast<Eigen::Index>(fitted_.size()), static_cast<Eigen::Index>(ks.size()));
+    for (Eigen::Index i = 0; i < a.rows(); ++i)
+      for (Eigen::Index k = 0; k < a.cols(); ++k)
+        a(i, k) = slope_of(rows_[fitted_[static_cast<std::size_t>(i)]], ks[static_cast<std::size_t>(k)]);
+    return a;
+  }
+
+  double predicted(const PartsRow& row) const {
+    double size = sizes_[row.job][row.feature]->size_mm;
+    for (std::size_t k = 0; k < unknowns_.size(); ++k)
+      if (unknowns_[k].adds()) size += slope_of(row, k) * x_[static_cast<Eigen::Index>(k)];
+    return size;
+  }
+
+  VectorXd residuals() const {
+    VectorXd out(static_cast<Eigen::Index>(fitted_.size()));
+    for (Eigen::Index i = 0; i < out.size(); ++i) {
+      const PartsRow& row = rows_[fitted_[static_cast<std::size_t>(i)]];
+      out[i] = row.measured_mm - predicted(row);
+    }
+    return out;
+  }
+
+  double limit(std::size_t k) const { return unknowns_[k].adds() ? kDetermined_mm : kDetermined; }
+
+  /// Standard errors of `ks` where each value has this noise; infinite where they are not determined at all.
+  VectorXd std_errors(const std::vector<std::size_t>& ks, double sigma_mm) const {
+    const MatrixXd a = columns(ks);
+    VectorXd scale = a.colwise().norm();
+    VectorXd out = VectorXd::Constant(a.cols(), INFINITY);
+    if ((scale.array() <= 0).any() || a.rows() < a.cols()) return out;
+    const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(unit);
+    if (qr.rank() < a.cols()) return out;
+    const MatrixXd covariance = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
+    return sigma_mm * covariance.diagonal().cwiseMax(0).cwiseSqrt().cwiseQuotient(scale);
+  }
+
+  bool all_determined(const std::vector<std::size_t>& ks, double sigma_mm) const {
+    const VectorXd errors = std_errors(ks, sigma_mm);
+    for (Eigen::Index i = 0; i < errors.size(); ++i)
+      if (!(errors[i] < limit(ks[static_cast<std::size_t>(i)]))) return false;
+    return true;
+  }
+
+  /// The unknown taken before whose column is most like this one's.
+  const PartsUnknown* alike(std::size_t k, const std::vector<std::size_t>& taken) const {
+    const MatrixXd all = columns(taken);
+    const VectorXd own = columns({k});
+    const PartsUnknown* out = nullptr;
+    double most = kAlike;
+    for (Eigen::Index i = 0; i < all.cols(); ++i) {
+      const double cosine = std::abs(all.col(i).dot(own)) / std::max(all.col(i).norm() * own.norm(), 1e-300);
+      if (cosine > most) most = cosine, out = &unknowns_[taken[static_cast<std::size_t>(i)]];
+    }
+    return out;
+  }
+
+  void refuse(std::size_t k, const std::vector<std::size_t>& taken) {
+    active_[k] = false;
+    const PartsUnknown* other = alike(k, taken);
+    const bool moves = columns({k}).norm() > 0;
+    notes_[k] = !moves  ? "no measured size depends on it"
+                : other ? fmt::format("cannot be told apart from {}", other->name)
+                        : "not determined by these sizes";
+    out_.confounded.push_back(fmt::format("{}: {}", unknowns_[k].name, notes_[k]));
+    out_.suggestions.push_back(suggestion_for(unknowns_[k], other));
+  }
+
+  /// Takes the unknowns in their order, each if it is determined together with those before.
+  void choose(double sigma_mm) {
+    std::vector<std::size_t> taken;
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      taken.push_back(k);
+      if (all_determined(taken, sigma_mm)) continue;
+      taken.pop_back();
+      refuse(k, taken);
+    }
+  }
+
+  /// Standard deviation of the residuals, outliers counted as far as the loss does: a first one by their median bounds
+  /// them.
+  double noise_mm(const VectorXd& r) const {
+    std::vector<double> sizes(r.data(), r.data() + r.size());
+    for (double& v : sizes) v = std::abs(v);
+    std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
+    const double dof = std::max<double>(1, static_cast<double>(r.size() - static_cast<Eigen::Index>(active().size())));
+    const double bound = std::max(
+        kLeastNoise_mm, kHuber * 1.4826 * sizes[sizes.size() / 2] * std::sqrt(static_cast<double>(r.size()) / dof));
+    return std::max(kLeastNoise_mm, std::sqrt(r.cwiseAbs().cwiseMin(bound).squaredNorm() / dof));
+  }
+
+  void iterate() {
+    out_.converged = false;
+    for (int round = 0; round < options_.max_rounds && !out_.converged; ++round) {
+      const std::vector<std::size_t> ks = active();
+      if (ks.empty()) {
+        out_.converged = true;
+        break;
+      }
+      const MatrixXd a = columns(ks);
+      VectorXd longest(a.cols());
+      for (Eigen::Index i = 0; i < a.cols(); ++i)
+        longest[i] = unknowns_[ks[static_cast<std::size_t>(i)]].adds() ? 1 : kLongest;
+      // Twice: the first solution shows the noise.
+      double sigma = 10 * kNoise_mm;
+      Solution step;
+      for (int pass = 0; pass < 2; ++pass) {
+        step = solve_linear(a, residuals(), sigma, longest);
+        sigma = noise_mm(residuals() - a * step.x);
+      }
+      sigma_mm_ = sigma;
+      const VectorXd errors = std_errors(ks, sigma);
+      out_.converged = step.converged && (step.x.cwiseAbs().array() <= kAtRest * errors.array()).all();
+      take_step(ks, step.x);
+      ++out_.rounds;
+    }
+  }
+
+  /// Moves to x + dx; real predictions there correct the slopes.
+  void take_step(const std::vector<std::size_t>& ks, const VectorXd& step) {
+    VectorXd dx = VectorXd::Zero(size());
+    for (std::size_t i = 0; i < ks.size(); ++i)
+      dx[static_cast<Eigen::Index>(ks[i])] = step[static_cast<Eigen::Index>(i)];
+    x_ += dx;
+    VectorXd of_model = dx;
+    for (std::size_t k = 0; k < unknowns_.size(); ++k)
+      if (unknowns_[k].adds()) of_model[static_cast<Eigen::Index>(k)] = 0;
+    if (of_model.squaredNorm() < 1e-24) return;
+    for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      if (!is_fitted_job(j)) continue;
+      show(fmt::format("round {}", out_.rounds + 1), j, jobs_.size());
+      const Sizes there = predict(j, x_);
+      VectorXd own = of_model;
+      for (std::size_t k = 0; k < unknowns_.size(); ++k)
+        if (!unknowns_[k].adds() && !unknowns_[k].of_job[j]) own[static_cast<Eigen::Index>(k)] = 0;
+      for (std::size_t f = 0; f < there.size(); ++f) {
+        if (!there[f] || !sizes_[j][f]) continue;  // keeps its last prediction
+        auto row = slope_[j].row(static_cast<Eigen::Index>(f));
+        if (own.squaredNorm() > 1e-8)
+          row += (there[f]->size_mm - sizes_[j][f]->size_mm - row.dot(own)) / own.squaredNorm() * own.transpose();
+        sizes_[j][f] = there[f];
+      }
+    }
+  }
+
+  /// An unknown whose error has turned out too large goes back to its start. Returns whether one did.
+  bool drop_undetermined() {
+    const std::vector<std::size_t> ks = active();
+    const VectorXd errors = std_errors(ks, sigma_mm_);
+    for (std::size_t i = ks.size(); i-- > 0;) {
+      if (errors[static_cast<Eigen::Index>(i)] < limit(ks[i])) continue;
+      std::vector<std::size_t> others = ks;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      refuse(ks[i], others);
+      const auto at = static_cast<Eigen::Index>(ks[i]);
+      if (x_[at] != 0 && !unknowns_[ks[i]].adds()) {
+        VectorXd back = VectorXd::Constant(1, -x_[at]);
+        take_step({ks[i]}, back);
+      }
+      x_[at] = 0;
+      return true;
+    }
+    return false;
+  }
+
+  // --- what is told
+
+  void predict_held_out() {
+    for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      if (is_fitted_job(j)) continue;
+      const Sizes there = predict(j, x_);
+      for (std::size_t f = 0; f < there.size(); ++f)
+        if (there[f]) sizes_[j][f] = there[f];
+    }
+  }
+
+  std::pair<double, double> feed_and_speed(const Job& job, int tool) const {
+    Diagnostics ignored;
+    std::pair<double, double> out{0, 0};
+    try {
+      const auto text = nc::read_program(SourceText::read(job.program), ignored);
+      const auto moves = nc::interpret(text, simulate::interpreter_options(job, false), ignored);
+      for (const nc::Move& m : moves.moves) {
+        const nc::ModalState& state = moves.state_of(m);
+        if (state.tool == tool && m.feed_mm_per_s > 0 && removal::in_operations(moves, m, job.operations))
+          out = {60 * m.feed_mm_per_s, state.spindle_speed_rpm};
+      }
+    } catch (const InputError&) {  // a predictor without programs
+    }
+    return out;
+  }
+
+  void add_residuals() {
+    std::map<std::pair<std::size_t, int>, std::pair<double, double>> conditions;
+    for (const PartsRow& row : rows_) {
+      if (!sizes_[row.job][row.feature]) continue;
+      const Job& job = jobs_[row.job];
+      const auto [at, fresh] = conditions.try_emplace({row.job, row.tool});
+      if (fresh && row.tool != 0) at->second = feed_and_speed(job, row.tool);
+      const auto tool = job.tools.find(row.tool);
+      out_.residuals.push_back({.job = job_name(job),
+                                .feature = job.features[row.feature].name,
+                                .part = row.part,
+                                .tool = row.tool,
+                                .measured_mm = row.measured_mm,
+                                .predicted_mm = predicted(row),
+                                .feed_mm_per_min = at->second.first,
+                                .overhang_mm = tool == job.tools.end() ? 0 : tool->second.overhang_mm,
+                                .spindle_rpm = at->second.second,
+                                .held_out = row.held_out});
+    }
+  }
+
+  void add_groups() {
+    struct Sum {
+      double square = 0;
+      int count = 0;
+      std::optional<double> rms() const { return count > 0 ? std::optional(std::sqrt(square / count)) : std::nullopt; }
+    };
+    std::map<std::pair<std::string, int>, std::array<Sum, 2>> sums;
+    Sum all;
+    for (const PartsResidual& r : out_.residuals) {
+      Sum& sum = sums[{r.feature, r.tool}][r.held_out ? 1 : 0];
+      sum.square += r.residual_um() * r.residual_um();
+      ++sum.count;
+      if (!r.held_out) all.square += r.residual_um() * r.residual_um(), ++all.count;
+    }
+    for (const auto& [key, s] : sums) out_.groups.push_back({key.first, key.second, s[0].rms(), s[1].rms()});
+    out_.rms_um = all.rms().value_or(0);
+  }
+
+  /// Covariance of the active unknowns.
+  MatrixXd covariance(const std::vector<std::size_t>& ks) const {
+    const MatrixXd a = columns(ks);
+    const VectorXd scale = a.colwise().norm();
+    const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
+    const MatrixXd c = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
+    return sigma_mm_ * sigma_mm_ * scale.cwiseInverse().asDiagonal() * c * scale.cwiseInverse().asDiagonal();
+  }
+
+  struct Told {
+    double value = 0, start = 0;
+    std::optional<double> std_error;
+  };
+
+  /// A value that is scaled by exp(x), or moved by x.
+  Told scaled(double start, std::size_t k, const std::map<std::size_t, double>& std_of) const {
+    const double x = x_[static_cast<Eigen::Index>(k)], value = start * std::exp(x);
+    const auto at = std_of.find(k);
+    return {value, start, at == std_of.end() ? std::nullopt : std::optional(value * at->second)};
+  }
+
+  void tell(const std::string& name, const std::string& unit, const Told& t, const std::string& note) {
+    out_.parameters.push_back({name, unit, t.value, t.start, t.std_error, note});
+  }
+
+  std::size_t job_of(const PartsUnknown& u) const {
+    const auto at = std::ranges::find(u.of_job, true);
+    return at == u.of_job.end() ? 0 : static_cast<std::size_t>(at - u.of_job.begin());
+  }
+
+  void add_gains(std::size_t k, const std::map<std::size_t, double>& std_of) {
+    const auto ratio = std::ranges::find(unknowns_, UnknownKind::gain_ratio, &PartsUnknown::kind);
+    const auto r = static_cast<std::size_t>(ratio - unknowns_.begin());
+    for (const int axis : {0, 1}) {
+      const double start = jobs_[job_of(unknowns_[k])].machine.axis[static_cast<std::size_t>(axis)].position_gain_per_s;
+      Told t = scaled(start, k, std_of);
+      const double half = (axis == 0 ? 0.5 : -0.5) * x_[static_cast<Eigen::Index>(r)];
+      t.value *= std::exp(half);
+      std::string note = notes_[k];
+      if (t.std_error && std_of.contains(r)) {
+        const double both = covariance_(index_.at(k), index_.at(r));
+        const double var =
+            std_of.at(k) * std_of.at(k) + 0.25 * std_of.at(r) * std_of.at(r) + (axis == 0 ? 1 : -1) * both;
+        t.std_error = t.value * std::sqrt(std::max(0.0, var));
+      } else if (t.std_error) {
+        note = "X and Y together: their ratio is not determined";
+      }
+      tell(fmt::format("axis.{}.position_gain_per_s", "xy"[axis]), "1/s", t, note);
+    }
+  }
+
+  std::size_t of_kind(UnknownKind kind) const {
+    return static_cast<std::size_t>(std::ranges::find(unknowns_, kind, &PartsUnknown::kind) - unknowns_.begin());
+  }
+
+  /// Variance of the sum of determined unknowns; nothing where none of them is.
+  std::optional<double> variance_of_sum(std::vector<std::size_t> ks) const {
+    std::erase_if(ks, [&](std::size_t k) { return !index_.contains(k); });
+    if (ks.empty()) return std::nullopt;
+    double var = 0;
+    for (const std::size_t a : ks)
+      for (const std::size_t b : ks) var += covariance_(index_.at(a), index_.at(b));
+    return std::max(0.0, var);
+  }
+
+  void add_forces(std::size_t k, const std::map<std::size_t, double>& std_of) {
+    tell("force_scale", "1", scaled(1, k, std_of), notes_[k]);
+    const Job &first = jobs_.front(), fitted = job_at(0, x_);
+    for (const auto& c : machine::description(first.material.law).coefficients) {
+      if (c.role == machine::CoefficientRole::shape || first.material.*c.field == 0) continue;
+      std::vector<std::size_t> scales{k};
+      if (c.role == machine::CoefficientRole::edge) scales.push_back(of_kind(UnknownKind::edge));
+      if (c.component == machine::Component::radial) scales.push_back(of_kind(UnknownKind::radial));
+      Told t{fitted.material.*c.field, first.material.*c.field, std::nullopt};
+      if (const auto var = variance_of_sum(scales)) t.std_error = std::abs(t.value) * std::sqrt(*var);
+      tell(std::string(c.key), std::string(c.unit), t, notes_[k]);
+    }
+  }
+
+  void add_parameter(std::size_t k, const std::map<std::size_t, double>& std_of) {
+    const PartsUnknown& u = unknowns_[k];
+    const Job& job = jobs_[job_of(u)];
+    const double x = x_[static_cast<Eigen::Index>(k)];
+    const auto own = std_of.contains(k) ? std::optional(std_of.at(k)) : std::nullopt;
+    switch (u.kind) {
+      case UnknownKind::offset: {
+        const double start = job.tools.at(u.tool).diameter_mm;
+        return tell(u.name, "mm", {start + x, start, own}, notes_[k]);
+      }
+      case UnknownKind::gain:
+        return add_gains(k, std_of);
+      case UnknownKind::force:
+        return add_forces(k, std_of);
+      case UnknownKind::edge:
+      case UnknownKind::radial:
+        return tell(u.name, "1", scaled(1, k, std_of), notes_[k]);
+      case UnknownKind::root:
+        return tell(u.name, "N/um", scaled(job.tools.at(u.tool).root_stiffness_N_per_mm / 1000, k, std_of), notes_[k]);
+      case UnknownKind::root_rotation:
+        return tell(u.name, "Nm/rad",
+                    scaled(job.tools.at(u.tool).root_rotational_stiffness_Nmm_per_rad / 1000, k, std_of), notes_[k]);
+      case UnknownKind::drift:
+        return tell(u.name, "um/day", {1000 * x, 0, own ? std::optional(1000 * *own) : own}, notes_[k]);
+      case UnknownKind::gain_ratio:
+        return;
+    }
+  }
+
+  void add_parameters() {
+    const std::vector<std::size_t> ks = active();
+    std::map<std::size_t, double> std_of;
+    if (!ks.empty()) {
+      covariance_ = covariance(ks);
+      for (std::size_t i = 0; i < ks.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        index_[ks[i]] = at;
+        std_of[ks[i]] = std::sqrt(covariance_(at, at));
+      }
+      for (std::size_t i = 0; i < ks.size(); ++i)
+        for (std::size_t j = i + 1; j < ks.size(); ++j)
+          out_.correlations.push_back({unknowns_[ks[i]].name, unknowns_[ks[j]].name,
+                                       covariance_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) /
+                                           (std_of[ks[i]] * std_of[ks[j]])});
+    }
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) add_parameter(k, std_of);
+    add_model_error(std_of);
+  }
+
+  void add_model_error(const std::map<std::size_t, double>& std_of) {
+    out_.error = inspect::model_error_of(jobs_.front());
+    double offsets = 0;
+    int count = 0;
+    for (const auto& [k, s] : std_of) {
+      if (unknowns_[k].kind == UnknownKind::force) out_.error.deflection = s;
+      if (unknowns_[k].kind == UnknownKind::gain) out_.error.contour = 2 * s;  // of v^2 / (r K^2)
+      if (unknowns_[k].kind == UnknownKind::offset) offsets += s * s, ++count;
+    }
+    if (count > 0) out_.error.size_mm = std::hypot(std::sqrt(offsets / count), sigma_mm_);
+  }
+
+  FitPartsResult finish() {
+    predict_held_out();
+    add_residuals();
+    add_groups();
+    add_parameters();
+    for (std::size_t j = 0; j < jobs_.size(); ++j) {
+      Job job = job_at(j, x_);
+      for (std::size_t k = 0; k < unknowns_.size(); ++k)
+        if (unknowns_[k].kind == UnknownKind::offset && unknowns_[k].of_job[j])
+          unknowns_[k].apply(job, x_[static_cast<Eigen::Index>(k)]);
+      out_.jobs.push_back(std::move(job));
+    }
+    if (out_.message.empty())
+      out_.message = out_.converged ? fmt::format("converged in {} rounds", out_.rounds)
+                                    : fmt::format("did not converge in {} rounds", out_.rounds);
+    return std::move(out_);
+  }
+
+  const std::vector<Job>& jobs_;
+  const FitPartsOptions& options_;
+  const std::vector<PartsRow> rows_;
+  const std::vector<PartsUnknown> unknowns_;
+  VectorXd x_;
+  std::vector<bool> active_;
+  std::vector<std::size_t> fitted_;  ///< rows
+  std::vector<Sizes> sizes_;         ///< of every job, at x_
+  std::vector<MatrixXd> slope_;      ///< of every job: features by unknowns
+  std::map<std::size_t, std::string> notes_;
+  std::map<std::size_t, Eigen::Index> index_;  ///< of an active unknown in covariance_
+  MatrixXd covariance_;
+  double sigma_mm_ = kNoise_mm;
+  FitPartsResult out_;
+};
+
+}  // namespace
+
+std::string job_name(const Job& job) {
+  const std::filesystem::path path(job.path);
+  if (path.stem() == "job" && path.has_parent_path()) return path.parent_path().filename().string();
+  return path.stem().string();
+}
+
+Job coarser(Job job) {
+  constexpr double kWidest_rad = 4 * kPi / 180;
+  job.simulation.voxel_mm *= 2;
+  if (job.simulation.envelope_step_mm > 0) job.simulation.envelope_step_mm *= 1.5;
+  job.simulation.rotation_step_rad = std::min(4 * job.simulation.rotation_step_rad, kWidest_rad);
+  return job;
+}
+
+std::vector<std::optional<PredictedSize>> predict_features(const Job& job) {
+  Diagnostics found;
+  const simulate::Setup setup = simulate::set_up(job, {}, {found, found, found});
+  const simulate::Prediction p = simulate::predict_surface(job, setup.target, setup.program, {}, "");
+  std::vector<std::optional<PredictedSize>> out;
+  for (const auto& r : inspect::evaluate(job.features, p.surface, job.simulation.voxel_mm))
+    out.push_back(r.predicted_mm ? std::optional(PredictedSize{*r.predicted_mm, r.deflection_um / 1000})
+                                 : std::nullopt);
+  return out;
+}
+
+FitPartsResult fit_parts(const std::vector<Job>& jobs, const FitPartsOptions& options) {
+  return Fit(jobs, options).run();
+}
+
+}  // namespace camber::calib

@@ -1,0 +1,162 @@
+#include "inspect/evaluate.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "inspect/evaluation.h"
+
+namespace camber::inspect {
+
+std::vector<double> spread(double from, double to, int count) {
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) out.push_back(count > 1 ? from + (to - from) * i / (count - 1) : (from + to) / 2);
+  return out;
+}
+
+std::vector<double> within_margins(double length, int count) {
+  constexpr double kMargin = 0.1;
+  return spread(kMargin * length, (1 - kMargin) * length, count);
+}
+
+Line fit_line(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
+  const double det = n * sxx - sx * sx;
+  if (!(det > 1e-12 * n * sxx)) return {n > 0 ? sy / n : 0, 0};
+  const double slope = (n * sxy - sx * sy) / det;
+  return {(sy - slope * sx) / n, slope};
+}
+
+double spread_of(const std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto [least, greatest] = std::ranges::minmax(values);
+  return greatest - least;
+}
+
+double size_by(const std::vector<double>& sizes, FeatureFilter filter) {
+  if (filter == FeatureFilter::min_zone) return *std::ranges::min_element(sizes);
+  double sum = 0;
+  for (const double s : sizes) sum += s;
+  return sum / static_cast<double>(sizes.size());
+}
+
+bool Evaluation::failed(const Probing& probing) {
+  out.readings += probing.readings.size();
+  out.missed += probing.missed;
+  if (probing.enough()) return false;
+  out.reason = probing.readings.empty() && probing.missed == 0
+                   ? "there is no surface of the job's operations"
+                   : fmt::format("{} of {} places have no surface of the job's operations, or are beyond the model",
+                                 probing.missed, probing.missed + probing.readings.size());
+  return true;
+}
+
+void Evaluation::set_sizes(double nominal, double contour, double machined) {
+  out.commanded_mm = nominal;
+  out.contour_um = 1000 * (contour - nominal);
+  out.deflection_um = 1000 * (machined - contour);
+  out.predicted_mm = machined;
+}
+
+namespace {
+
+void evaluate_alone(Evaluation& e) {
+  switch (e.feature.kind) {
+    case FeatureKind::plane:
+      return evaluate_plane(e);
+    case FeatureKind::bore:
+    case FeatureKind::boss:
+      return evaluate_cylinder(e);
+    case FeatureKind::slot_width:
+      return evaluate_slot(e);
+    case FeatureKind::wall:
+      return evaluate_wall(e);
+    case FeatureKind::points:
+      return evaluate_points(e);
+    case FeatureKind::distance:
+      if (e.feature.of[0].empty()) evaluate_point_distance(e);
+      return;
+  }
+}
+
+/// Where a feature's middle should be, of those that tell positions.
+Vec3 nominal_middle(const Evaluation& e) {
+  const Feature& f = e.feature;
+  const Vec3 axis = (f.axis_mm[1] - f.axis_mm[0]).normalized();
+  if (f.kind == FeatureKind::plane) return f.axis_mm[0] + f.nominal_mm * axis;
+  if (e.constrained.size() == 2) return f.axis_mm[0] + axis.dot(e.machined_middle_mm() - f.axis_mm[0]) * axis;
+  const Vec3 m = (f.axis_mm[0] + f.axis_mm[1]) / 2;
+  return f.kind == FeatureKind::slot_width ? Vec3(m.x(), m.y(), e.machined_middle_mm().z()) : m;
+}
+
+/// Shift and small turn (about the origin) that bring the features of the alignment nearest to their places.
+Eigen::Matrix<double, 6, 1> alignment(const std::vector<Evaluation>& all) {
+  std::vector<Eigen::Matrix<double, 1, 6>> rows;
+  std::vector<double> off;
+  for (const Evaluation& e : all) {
+    if (!e.feature.align || !e.placed) continue;
+    const Vec3 place = nominal_middle(e);
+    for (const Vec3& n : e.constrained) {
+      Eigen::Matrix<double, 1, 6> row;
+      row << n.transpose(), place.cross(n).transpose();
+      rows.push_back(row);
+      off.push_back(n.dot(e.machined_middle_mm() - place));
+    }
+  }
+  if (rows.empty()) return Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::MatrixXd a(static_cast<Eigen::Index>(rows.size()), 6);
+  for (std::size_t i = 0; i < rows.size(); ++i) a.row(static_cast<Eigen::Index>(i)) = rows[i];
+  return a.completeOrthogonalDecomposition().solve(
+      Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size())));
+}
+
+void set_positions(std::vector<Evaluation>& all) {
+  const Eigen::Matrix<double, 6, 1> motion = alignment(all);
+  for (Evaluation& e : all) {
+    if (!e.placed) continue;
+    const Vec3 place = nominal_middle(e);
+    const Vec3 moved = motion.head<3>() + motion.tail<3>().cross(place);
+    Vec3 off = Vec3::Zero();
+    for (const Vec3& n : e.constrained) off += n.dot(e.machined_middle_mm() - place - moved) * n;
+    e.out.position_um = 1000 * off;
+  }
+}
+
+void set_given(FeatureResult& r, const Feature& f, const ModelError& error) {
+  r.feature = f.name;
+  r.kind = f.kind;
+  r.nominal_mm = f.nominal_mm;
+  r.measured_mm = machine::measured_mean_mm(f);
+  if (f.tol_mm) r.lower_mm = f.nominal_mm + (*f.tol_mm)[0], r.upper_mm = f.nominal_mm + (*f.tol_mm)[1];
+  if (!r.predicted_mm) return;
+  const double of_size = std::abs(f.size_per_diameter()) * error.size_mm;
+  r.std_mm = std::hypot(error.deflection * r.deflection_um / 1000, error.contour * r.contour_um / 1000, of_size);
+}
+
+}  // namespace
+
+std::vector<FeatureResult> evaluate(const std::vector<Feature>& features,
+                                    std::span<const removal::SurfacePoint> surface, double voxel_mm,
+                                    const ModelError& error) {
+  std::vector<FeatureResult> out(features.size());
+  std::vector<Evaluation> all;
+  all.reserve(features.size());
+  for (std::size_t i = 0; i < features.size(); ++i)
+    evaluate_alone(all.emplace_back(Evaluation{features[i], surface, voxel_mm, out[i]}));
+  const auto named = [&](const std::string& name) -> const Evaluation& {
+    return *std::ranges::find(all, name, [](const Evaluation& e) { return e.feature.name; });
+  };
+  for (Evaluation& e : all)
+    if (!e.feature.of[0].empty()) evaluate_distance_of(e, named(e.feature.of[0]), named(e.feature.of[1]));
+  set_positions(all);
+  for (std::size_t i = 0; i < features.size(); ++i) set_given(out[i], features[i], error);
+  return out;
+}
+
+}  // namespace camber::inspect
