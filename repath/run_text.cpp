@@ -247,7 +247,8 @@ class SayingBlockWriter : RunBlockWriter {
       arcs = true;
       const Vec2 centre = from + p.center_from_start_mm;
       const nc::RoundedArc arc{centre.x(), centre.y(), 0};
-      const nc::WantedArc wanted{.sweep_rad = p.sweep_rad, .plane = plane};
+      nc::WantedArc wanted;
+      wanted.sweep_rad = p.sweep_rad, wanted.plane = plane;
       put(rules_.further_arc(block_, words, wanted, arc, unit_mm_, decimals_for(centre.x(), centre.y()), own()));
       out_.line_of.push_back(out_.lines.size() - 1);
     }
@@ -319,7 +320,8 @@ bool mode_is_used_behind(const nc::Program& program, std::size_t block) {
 }
 
 TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& moves) {
-  TextStyle style{.numbers = nc::style_of(program)};
+  TextStyle style;
+  style.numbers = nc::style_of(program);
   const bool inch = std::any_of(moves.states.begin(), moves.states.end(), [](const auto& s) { return s.inch; });
   style.decimals = inch ? 4 : 3;
   for (const nc::Word& w : program.words) {
