@@ -7,7 +7,10 @@ namespace camber::dynamics {
 
 std::vector<BeamMode> beam_modes_of(const machine::Tool& tool, int count) {
   const double density = tool.density_kg_per_m3.value_or(usual_density_kg_per_m3(tool.youngs_modulus_MPa));
-  return beam_modes(beam_of_tool(tool, density), {.stiffness_N_per_mm = tool.root_stiffness_N_per_mm}, count);
+  return beam_modes(beam_of_tool(tool, density),
+                    {.stiffness_N_per_mm = tool.root_stiffness_N_per_mm,
+                     .tilt_stiffness_Nmm_per_rad = tool.root_rotational_stiffness_Nmm_per_rad},
+                    count);
 }
 
 std::vector<Mode> modes_of(const machine::Tool& tool) {

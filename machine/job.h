@@ -54,9 +54,9 @@ struct Tool {
   double root_axial_stiffness_N_per_mm = kNoLimit;          ///< along the axis, holder and spindle
   double root_rotational_stiffness_Nmm_per_rad = kNoLimit;  ///< about the axes across the tool, at the holder face
   std::optional<double> axial_stiffness_N_per_mm{};  ///< of the tool itself along its axis; empty: from its geometry
-  std::vector<std::string> typical{};  ///< keys that nobody gave, with the typical values that stand for them
-  std::optional<double> density_kg_per_m3{};         ///< not given: by the modulus (dynamics/beam_modes.h)
-  std::vector<Mode> modes{};                         ///< measured at the tip; empty: those of its beam
+  std::vector<std::string> typical{};         ///< keys that nobody gave, with the typical values that stand for them
+  std::optional<double> density_kg_per_m3{};  ///< not given: by the modulus (dynamics/beam_modes.h)
+  std::vector<Mode> modes{};                  ///< measured at the tip; empty: those of its beam
 };
 
 struct Box {

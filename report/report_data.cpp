@@ -85,7 +85,7 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
   for (const auto& d : diagnostics.all()) data.warnings.push_back(to_string(d));
   if (!unsettled.empty()) data.warnings.push_back(unsettled);
   data.notes.push_back(
-      "Not in the model: deflection of the workpiece, chatter, thermal growth and wear. Tool deflection is static.");
+      "Not in the model: deflection of the workpiece, thermal growth and wear. Tool deflection is static.");
   for (TextTable table :
        {material_table(job), tools_table(job), machine_table(job.machine), simulation_table(job), inputs_table(job)})
     data.tables.push_back(std::move(table));
