@@ -48,7 +48,9 @@ ForceRow row_of(const report::ForceRow& r) {
           .specific_energy_MPa = r.specific_energy_MPa,
           .block = static_cast<std::int64_t>(r.line),
           .f_axial_max_N = r.axial_max_N,
-          .valid = r.valid};
+          .valid = r.valid,
+          .chatter_margin = r.chatter_margin,
+          .chatter_hz = r.chatter_hz};
 }
 
 std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {

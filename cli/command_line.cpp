@@ -122,6 +122,7 @@ int run(int argc, const char* const* argv) {
   add_copy_command(app, options, chosen);
   add_plan_command(app, options, chosen);
   add_force_commands(app, options, chosen);
+  add_dynamics_commands(app, options, chosen);
   add_help(app, chosen);
   try {
     app.parse(argc, argv);

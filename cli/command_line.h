@@ -18,6 +18,7 @@ using Action = std::function<int()>;
 /// Adds the subcommands. The one that is given sets `chosen`.
 void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< check, feed, fit-feed
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_dynamics_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< lobes, fit-modes
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 /// predict, compensate, adapt, study
 void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);

@@ -25,6 +25,8 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "camber protocol --machine machine.toml -o programs\n  camber protocol --machine machine.toml --part -o "
      "test_piece"},
     {"fit-force", "camber fit-force --log means.csv --job job.toml -o material.toml"},
+    {"lobes", "camber lobes job.toml --tool 1 --radial-mm 2 --rpm 4000:16000:121 --plot lobes.svg"},
+    {"fit-modes", "camber fit-modes tap_x.csv --tool 1 --direction x -o modes.toml --plot tap_x.svg"},
     {"init", "camber init finish.nc --machine machine.toml --material S55C -o first_job.toml"},
     {"predict",
      "camber predict job.toml -o predicted\n"

@@ -39,6 +39,9 @@ class Beam {
   /// warning that a static deflection is no longer valid. `density_kg_per_m3` of the shank.
   double first_frequency_hz(const machine::Tool& tool, double density_kg_per_m3) const;
 
+  /// From the tip up.
+  const std::vector<Section>& sections() const { return sections_; }
+
  private:
   std::vector<Section> sections_;
   Root root_;

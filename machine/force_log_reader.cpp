@@ -166,7 +166,8 @@ ForceLog read_force_log(const std::string& job_path, Diagnostics& diagnostics) {
   const auto file = read_toml(job_path, "a job with [tool.1] and [force_log]", diagnostics);
   diagnostics.throw_if_errors();
   TomlTable top = TomlTable::top(*file, diagnostics);
-  for (const auto key : {"program", "machine", "units", "operations", "stock", "part", "simulation", "compensation"})
+  for (const auto key :
+       {"program", "machine", "units", "operations", "stock", "part", "simulation", "compensation", "workpiece"})
     top.ignore(key);
   std::map<int, Tool> tools;
   read_tools(top, std::filesystem::path(job_path).parent_path(), false, tools, diagnostics);

@@ -13,6 +13,7 @@
 #include "machine/features.h"
 #include "machine/machine.h"
 #include "machine/material.h"
+#include "machine/mode.h"
 
 namespace camber::machine {
 
@@ -53,7 +54,9 @@ struct Tool {
   double root_axial_stiffness_N_per_mm = kNoLimit;          ///< along the axis, holder and spindle
   double root_rotational_stiffness_Nmm_per_rad = kNoLimit;  ///< about the axes across the tool, at the holder face
   std::optional<double> axial_stiffness_N_per_mm{};  ///< of the tool itself along its axis; empty: from its geometry
-  std::vector<std::string> typical{};  ///< keys that nobody gave, with the typical values that stand for them
+  std::vector<std::string> typical{};         ///< keys that nobody gave, with the typical values that stand for them
+  std::optional<double> density_kg_per_m3{};  ///< not given: by the modulus (dynamics/beam_modes.h)
+  std::vector<Mode> modes{};                  ///< measured at the tip; empty: those of its beam
 };
 
 struct Box {
@@ -175,6 +178,7 @@ struct Job {
   std::optional<AdaptSettings> adapt{};
   std::vector<Feature> features{};  ///< that predict and compensate evaluate
   std::optional<ModelError> model_error{};
+  std::vector<Mode> workpiece_modes{};  ///< of the work on its table; empty: it is rigid
 };
 
 /// Reads the job and its machine file. Throws InputError with file:line:column.

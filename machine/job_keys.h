@@ -14,6 +14,7 @@ inline constexpr std::array<std::string_view, 2> kReferenceWords{"commanded", "m
 inline constexpr std::array<std::string_view, 3> kLeverWords{"shift", "feed", "passes"};
 inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
+inline constexpr std::array<std::string_view, 2> kDirectionWords{"x", "y"};
 
 inline constexpr NumberRange kFlutes{.min = 1, .max = 100, .whole = true};
 inline constexpr NumberRange kToolNumber{.min = 0, .max = 99999999, .whole = true};
@@ -30,6 +31,7 @@ inline constexpr NumberRange kTaperDeg{.min = 0, .max = 80};
 inline constexpr NumberRange kPointAngleDeg{.min = 10, .max = 170};
 inline constexpr NumberRange kRunoutAngleDeg{.min = -360, .max = 360};
 inline constexpr NumberRange kPitchDeg{.min = 1, .max = 359};
+inline constexpr NumberRange kDampingPercent{.min = 0, .max = 100, .above_min = true};
 
 /// Numbers that a tool has anyway. Diameter and overhang must be given.
 inline constexpr std::array kToolKeys{
@@ -72,6 +74,13 @@ inline constexpr std::array kProfileKeys{
     ProfileKey{{"bottom_angle_deg", &Tool::bottom_angle_rad, kTaperDeg, kDegrees}, "general", ""},
     ProfileKey{{"corner_centre_r_mm", &Tool::corner_centre_r_mm, kAnyNumber}, "general", ""},
     ProfileKey{{"corner_centre_z_mm", &Tool::corner_centre_z_mm, kAnyNumber}, "general", ""},
+};
+
+/// Of [[tool.N.mode]] and [[workpiece.mode]]; all must be given.
+inline constexpr std::array kModeKeys{
+    NumberKey<Mode>{"frequency_Hz", &Mode::frequency_hz, kPositive},
+    NumberKey<Mode>{"damping_percent", &Mode::damping_ratio, kDampingPercent, kAsPercent},
+    NumberKey<Mode>{"stiffness_N_per_um", &Mode::stiffness_N_per_mm, kPositive, kNewtonsPerMicrometre},
 };
 
 inline constexpr std::array kSimulationKeys{

@@ -10,6 +10,7 @@
 #include "machine/job_tables.h"
 #include "machine/machine_presets.h"
 #include "machine/material_reader.h"
+#include "machine/mode_reader.h"
 #include "machine/unprogrammed_job.h"
 
 namespace camber::machine {
@@ -273,6 +274,7 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
   if (auto adapt = top.table("adapt")) job.adapt = read_adapt(*adapt);
   job.features = read_features(top, folder);
   job.model_error = read_model_error(top);
+  if (auto workpiece = top.table("workpiece")) job.workpiece_modes = read_modes(*workpiece), workpiece->finish();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "machine/assumptions.h"
 #include "machine/job_keys.h"
 #include "machine/material_reader.h"
+#include "machine/mode_reader.h"
 #include "machine/tool_reader.h"
 
 namespace camber::machine {
@@ -43,8 +44,10 @@ std::string tool_text(const Tool& tool, const AssumedKeys& assumed) {
   }
   if (tool.axial_stiffness_N_per_mm)
     out += toml_line("axial_stiffness_N_per_um", *tool.axial_stiffness_N_per_mm, kNewtonsPerMicrometre);
+  if (tool.density_kg_per_m3) out += toml_line("density_kg_per_m3", *tool.density_kg_per_m3, kAsIs);
   if (tool.shear) out += "shear = true\n";
-  return out + assumed_line(assumed, fmt::format("tool.{}", tool.number));
+  out += assumed_line(assumed, fmt::format("tool.{}", tool.number));
+  return out + modes_text(tool.modes, fmt::format("tool.{}", tool.number));
 }
 
 std::string point_text(const Vec3& p) {
@@ -125,7 +128,8 @@ std::string to_toml(const Job& job) {
   if (job.simulation.max_memory_GB) out += toml_line("max_memory_GB", *job.simulation.max_memory_GB, kAsIs);
   out += compensation_text(job.compensation);
   if (job.adapt) out += adapt_text(*job.adapt);
-  return out + features_text(job.features, job.model_error);
+  out += features_text(job.features, job.model_error);
+  return out + modes_text(job.workpiece_modes, "workpiece");
 }
 
 }  // namespace camber::machine

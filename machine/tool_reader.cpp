@@ -7,6 +7,7 @@
 
 #include "machine/cutter_parameters.h"
 #include "machine/job_keys.h"
+#include "machine/mode_reader.h"
 
 namespace camber::machine {
 namespace {
@@ -115,6 +116,7 @@ void read_lengths(TomlTable& table, Tool& tool) {
   tool.flute_length_mm = table.optional_number("flute_length_mm", kPositive);
   if (const auto stiffness = table.optional_number("axial_stiffness_N_per_um", kPositiveOrInf))
     tool.axial_stiffness_N_per_mm = N_per_mm_from_N_per_um(*stiffness);
+  tool.density_kg_per_m3 = table.optional_number("density_kg_per_m3", kPositive);
   tool.shank_diameter_mm = table.number("shank_diameter_mm", kPositive, 0);
   tool.shear = table.boolean("shear", false);
   if (tool.flute_length_mm && tool.overhang_mm > 0 && *tool.flute_length_mm > tool.overhang_mm)
@@ -157,6 +159,7 @@ Tool read_tool(TomlTable table, int number) {
   read_neck(table, tool);
   read_holder(table, tool);
   if (tool.flutes > 0) read_teeth(table, tool);
+  tool.modes = read_modes(table);
   check_overhang(table, tool);
   take_typical_values(table, tool);
   table.ignore("assumed");  // assumptions.h

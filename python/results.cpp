@@ -80,6 +80,8 @@ void add_tables(py::module_& module) {
       .add("specific_energy_MPa", &ForceRow::specific_energy_MPa)
       .add("f_axial_max_N", &ForceRow::f_axial_max_N)
       .add("valid", &ForceRow::valid)
+      .add("chatter_margin", &ForceRow::chatter_margin)
+      .add("chatter_Hz", &ForceRow::chatter_hz)
       .add_vectors("points", &ForceRow::x_mm);
   TableClass<ErrorPoint>(module, "ErrorPoints")
       .add("x_mm", &ErrorPoint::x_mm)

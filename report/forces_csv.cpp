@@ -17,6 +17,7 @@ constexpr std::size_t kFlushBytes = 1 << 20;
 struct Turn {
   std::size_t teeth = 0;
   bool valid = true;
+  simulate::ChatterMargins::Passage chatter;
   StampLoad load;
 
   void add(const StampLoad& l) {
@@ -56,7 +57,9 @@ ForceRow row_of(const Stamp& first, std::size_t line, const Turn& turn, double r
           .chip_max_mm = l.chip_max_mm,
           .chip_mean_mm = l.chip_area_mm2 > 0 ? l.chip_mm3 / l.chip_area_mm2 : 0.0,
           .specific_energy_MPa = l.chip_mm3 > 0 ? l.work_Nmm / l.chip_mm3 : 0.0,
-          .valid = turn.valid};
+          .valid = turn.valid,
+          .chatter_margin = turn.chatter.margin,
+          .chatter_hz = turn.chatter.hz};
 }
 
 void append_row(std::string& out, const ForceRow& r, bool axial) {
@@ -74,6 +77,8 @@ void append_row(std::string& out, const ForceRow& r, bool axial) {
   append_cells(out, 6, {r.chip_max_mm, r.chip_mean_mm});
   append_cells(out, 2, {r.specific_energy_MPa});
   append_cells(out, 0, {r.valid ? 1.0 : 0.0});
+  append_cells(out, 4, {r.chatter_margin});
+  append_cells(out, 1, {r.chatter_hz});
   if (axial) append_cells(out, 3, {r.axial_max_N});
   out.back() = '\n';
 }
@@ -94,6 +99,7 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
       while (k < end && turn.teeth < flutes && program.moves.moves[stamps[k].move].block == move.block &&
              (k == from || !stamps[k].first)) {
         turn.valid = turn.valid && prediction.validity.valid(k);
+        if (const auto c = prediction.chatter.of(k); c.margin > turn.chatter.margin) turn.chatter = c;
         turn.add(prediction.cut.loads[k++]);
       }
       const double rpm = program.moves.state_of(move).spindle_speed_rpm;
@@ -112,7 +118,7 @@ void write_forces_csv(const std::string& path, const machine::Job& job, const si
   file.stream()
       << "t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,"
          "dx_um,dy_um,dz_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,"
-         "specific_energy_MPa,valid"
+         "specific_energy_MPa,valid,chatter_margin,chatter_Hz"
       << (axial ? ",f_axial_max_N\n" : "\n");
   std::string text;
   for_each_force_row(job, program, prediction, [&](const ForceRow& row) {

@@ -26,6 +26,7 @@ struct ForceRow {
   double specific_energy_MPa = 0;
   int tool = 0;
   bool valid = true;  ///< the model holds in all of the row's tooth passings
+  double chatter_margin = 0, chatter_hz = 0;
 };
 
 /// Calls `take` with every row, in the order of the path.
@@ -33,14 +34,17 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
                         const simulate::Prediction& prediction, const std::function<void(const ForceRow&)>& take);
 
 /// Columns: t_s,block,x_mm,y_mm,z_mm,fx_max_N,fy_max_N,fz_max_N,f_max_N,fx_mean_N,fy_mean_N,fz_mean_N,dx_um,dy_um,
-/// dz_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,specific_energy_MPa,valid.
+/// dz_um,mrr_mm3_per_s,removed_mm3,torque_max_Nm,torque_mean_Nm,power_W,h_max_mm,h_mean_mm,specific_energy_MPa,valid,
+/// chatter_margin,chatter_Hz.
 /// Torque and power are the spindle's for cutting; h is the uncut chip thickness, its mean weighted by area; the
 /// specific energy is the spindle's work over the chips' volume (MPa = J/cm3), 0 where nothing is removed. Forces act
 /// on the tool, in the part's axes, those of the machine in programs of X, Y and Z; fx_max is the signed value of
 /// largest magnitude, f_max the greatest force across the tool's axis; dx, dy, dz the deflection at the height of the
 /// contact, at the instant at which an edge passes it, mean over the row's teeth; t, x, y, z belong to the row's first
-/// tooth. Where a tool is tilted, a last column f_axial_max_N holds the force along its axis, of largest magnitude,
-/// positive towards the spindle. Throws InputError [file-unwritable].
+/// tooth. The margin is the depth of the cut over the depth at which it becomes unstable, the greatest of the row's
+/// teeth, with the frequency that would be heard (simulate/chatter.h). Where a tool is tilted, a last column
+/// f_axial_max_N holds the force along its axis, of largest magnitude, positive towards the spindle. Throws InputError
+/// [file-unwritable].
 void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
                       const simulate::Prediction& prediction);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "report/chatter_page.h"
 #include "report/feature_results.h"
 #include "report/model_tables.h"
 #include "report/page_tables.h"
@@ -84,7 +85,7 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
   for (const auto& d : diagnostics.all()) data.warnings.push_back(to_string(d));
   if (!unsettled.empty()) data.warnings.push_back(unsettled);
   data.notes.push_back(
-      "Not in the model: deflection of the workpiece, chatter, thermal growth and wear. Tool deflection is static.");
+      "Not in the model: deflection of the workpiece, thermal growth and wear. Tool deflection is static.");
   for (TextTable table :
        {material_table(job), tools_table(job), machine_table(job.machine), simulation_table(job), inputs_table(job)})
     data.tables.push_back(std::move(table));
@@ -235,6 +236,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   if (turns(rows)) data.machine = machine_view(job, rows);
   data.path.push_back({"", program.text.source.text(), std::move(rows)});
   if (!simulate::beyond_model(p)) add_worst_lines(data, program, false);
+  add_chatter(data, job, p.chatter);
   add_texts(data, job, diagnostics, unsettled_sentence(program, p));
   if (std::vector<std::string> doubts = simulate::doubts(job, program, p); !doubts.empty())
     data.verdict = PageVerdict{false, "these figures are not to be relied on", std::move(doubts)};

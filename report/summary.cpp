@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include "base/json.h"
+#include "base/units.h"
+#include "report/chatter_page.h"
 #include "report/figure_rows.h"
 #include "simulate/validity.h"
 #include "simulate/verdict.h"
@@ -165,6 +167,7 @@ void add_beyond_model(const simulate::SimulatedProgram& program, const simulate:
         j[group] = {{"min", nullptr}, {"max", nullptr}, {"mean", nullptr}, {"rms", nullptr}, {"p95", nullptr}};
   std::vector<std::uint32_t> stamps = p.cut.beyond_stamps;
   stamps.insert(stamps.end(), p.cut.unsettled_stamps.begin(), p.cut.unsettled_stamps.end());
+  stamps.insert(stamps.end(), p.chatter.invalid_stamps.begin(), p.chatter.invalid_stamps.end());
   j["beyond_model"] = {{"share", v.surface_fraction()},
                        {"share_of_passings", v.passing_fraction()},
                        {"area_mm2", v.invalid_mm2},
@@ -190,6 +193,29 @@ double simulated_time_s(std::span<const removal::Stamp> stamps) {
 }  // namespace
 
 namespace {
+
+Json chatter_json(const simulate::ChatterMargins& margins) {
+  Json out = {{"operations", Json::array()}};
+  double worst = 0;
+  for (const simulate::ChatterOperation& o : margins.operations) {
+    worst = std::max(worst, o.margin);
+    out["operations"].push_back(
+        {{"tool", o.tool},
+         {"speed_rpm", o.speed_rpm},
+         {"modes", o.measured ? "given" : "beam"},
+         {"margin", o.margin},
+         {"line", o.line},
+         {"chatter_Hz", o.chatter_hz},
+         {"depth_mm", o.depth_mm},
+         {"critical_depth_mm", o.stable_depth_mm},
+         {"arc_deg", deg_from_rad(o.arc_rad)},
+         {"probability", o.probability},
+         {"stable_speed_rpm", o.stable_speed_rpm > 0 ? Json(o.stable_speed_rpm) : Json(nullptr)},
+         {"lines", o.lines}});
+  }
+  out["margin"] = worst;
+  return out;
+}
 
 Json traced_json(const simulate::TracedRun& t) {
   return {{"file", t.trace},
@@ -253,6 +279,7 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
     if (const auto lines = unsettled_lines(program, p, reason); !lines.empty())
       j["static"]["unsettled_reasons"].push_back({{"reason", name(reason)}, {"lines", lines}});
   if (traced) j["trace"] = traced_json(*traced);
+  j["chatter"] = chatter_json(p.chatter);
   j["doubts"] = doubts;
   add_beyond_model(program, p, j);
   return j.dump(2) + "\n";
@@ -270,7 +297,8 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
   else
     fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the stock\n", p.cut.stock_mm3);
   const bool no_forces = simulate::forces_beyond_model(p), no_errors = simulate::beyond_model(p);
-  if (no_forces && no_errors) return out + "force, deflection and form error: beyond the model's range\n";
+  const std::string chatter = chatter_text(p.chatter);
+  if (no_forces && no_errors) return out + chatter + "force, deflection and form error: beyond the model's range\n";
   if (no_forces) {
     out += "forces: beyond the model's range\n";
   } else {
@@ -280,6 +308,7 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
     fmt::format_to(std::back_inserter(out), "power {:.1f} W maximum, {:.1f} W mean in the cut; {:.0f} J/cm3\n",
                    s.power_max_W, s.power_mean_W, s.specific_energy_MPa);
   }
+  out += chatter;
   if (p.holes.any()) out += holes_text(p.holes);
   if (no_errors) return out + "deflection and form error: beyond the model's range\n";
   fmt::format_to(std::back_inserter(out), "{}\n{}\n{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um),

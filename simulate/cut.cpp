@@ -72,6 +72,7 @@ StampLoad between(const StampLoad& a, const StampLoad& b, double way) {
   load.work_Nmm = mix(a.work_Nmm, b.work_Nmm);
   load.chip_max_mm = mix(a.chip_max_mm, b.chip_max_mm);
   load.chip_area_mm2 = mix(a.chip_area_mm2, b.chip_area_mm2);
+  load.arc = mix(a.arc, b.arc);
   return load;
 }
 
@@ -238,6 +239,7 @@ class Cutter {
       model_.evaluate(blocks, chips, from + k, removal::motion_in_tool(all, from + k), pass, row);
       loads[k] = summarize(pass, all[from + k].pose);
       loads[k].chip_mm3 = removal::chip_volume_mm3(envelope_, blocks, chips);
+      loads[k].arc = deflection::chip_arc(envelope_, blocks, chips);
       if (!at_other_chip.empty()) at_other_chip[k] = at_ratio(blocks, chips, all, from + k, pass);
       ++read;
       if (!in_turn(from + k)) return;
@@ -378,6 +380,7 @@ class Cutter {
         loads[k] = summarize(pass, all[from + k].pose);
         loads[k].chip_mm3 = removal::swept_chip_volume_mm3(envelope_, chips, deflections,
                                                            deflections.row(static_cast<std::ptrdiff_t>(k)));
+        loads[k].arc = deflection::chip_arc(envelope_, chips);
         keep_turn(chips, all, from + k, result);
       });
       result.rounds_max = std::max(result.rounds_max, passing.rounds);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "deflection/chip_arc.h"
 #include "deflection/static_cut.h"
 #include "deflection/tooth_pass.h"
 #include "machine/job.h"
@@ -31,6 +32,7 @@ struct StampLoad {
   double chip_max_mm = 0;                          ///< thickest chip
   double chip_area_mm2 = 0;                        ///< chip_mm3 over it is the mean thickness
   double deflection_max_mm = 0;                    ///< of the tip, at any rotation step
+  deflection::ChipArc arc;                         ///< where the chips are around the tool
 };
 
 /// P = M 2 pi n / 60.

@@ -13,6 +13,7 @@
 #include "nc/interpreter.h"
 #include "removal/engagement.h"
 #include "removal/nominal_path.h"
+#include "simulate/chatter.h"
 #include "simulate/contour.h"
 #include "simulate/job_checks.h"
 #include "simulate/job_stock.h"
@@ -561,7 +562,8 @@ Prediction judge(const Job& job, const Target& target, const SimulatedProgram& p
   out.between = target.region.between;
   out.unseen_mm2 = target.unseen_mm2;
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
-  out.validity = find_validity(job, program, out.cut, out.surface);
+  out.chatter = find_chatter(job, program, out.cut.loads);
+  out.validity = find_validity(job, program, out.cut, out.chatter.invalid_stamps, out.surface);
   std::vector<double> error_um, deflection_um, contour_um, area;
   for (auto* values : {&error_um, &deflection_um, &contour_um, &area}) values->reserve(out.surface.size());
   for (const auto& p : out.surface) {

@@ -15,6 +15,7 @@
 #include "removal/part_mesh.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
+#include "simulate/chatter_margins.h"
 #include "simulate/cut.h"
 #include "simulate/holes.h"
 #include "simulate/memory.h"
@@ -153,6 +154,7 @@ struct Prediction {
     removal::ErrorFigures lag_um, path_tolerance_um, corner_law_um;
   };
   std::optional<ContourFigures> contour_parts_um{};
+  ChatterMargins chatter{};
 };
 
 /// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).

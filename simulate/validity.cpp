@@ -28,8 +28,10 @@ void mark_stretch(const SimulatedProgram& program, const removal::ToolRun& run, 
   }
 }
 
-std::vector<bool> valid_stamps(const machine::Job& job, const SimulatedProgram& program, const CutResult& cut) {
+std::vector<bool> valid_stamps(const machine::Job& job, const SimulatedProgram& program, const CutResult& cut,
+                               std::span<const std::uint32_t> unstable) {
   std::vector<std::uint32_t> found = cut.beyond_stamps;
+  found.insert(found.end(), unstable.begin(), unstable.end());
   found.insert(found.end(), cut.unsettled_stamps.begin(), cut.unsettled_stamps.end());
   std::ranges::sort(found);
   std::vector<bool> valid(program.path.stamps.size(), true);
@@ -132,10 +134,10 @@ class InvalidCutters {
 }  // namespace
 
 Validity find_validity(const machine::Job& job, const SimulatedProgram& program, const CutResult& cut,
-                       std::vector<removal::SurfacePoint>& surface) {
+                       std::span<const std::uint32_t> unstable, std::vector<removal::SurfacePoint>& surface) {
   Validity out;
-  if (cut.beyond_stamps.empty() && cut.unsettled_stamps.empty()) return out;
-  out.stamps = valid_stamps(job, program, cut);
+  if (cut.beyond_stamps.empty() && cut.unsettled_stamps.empty() && unstable.empty()) return out;
+  out.stamps = valid_stamps(job, program, cut, unstable);
   for (std::size_t k = 0; k < cut.loads.size(); ++k) {
     if (cut.loads[k].chip_mm3 <= 0 && out.stamps[k]) continue;
     ++out.passings;

@@ -18,8 +18,9 @@ constexpr double kMaxInvalid = 0.5;
 ///
 /// Of `surface` the points that such a passing has made are made invalid; so are those that the undeflected cutter
 /// would have touched there, if nothing has cut them later: the tool should have made them, and was pushed away.
+/// `unstable`: passings that chatter (ChatterMargins::invalid_stamps), the same.
 Validity find_validity(const machine::Job& job, const SimulatedProgram& program, const CutResult& cut,
-                       std::vector<removal::SurfacePoint>& surface);
+                       std::span<const std::uint32_t> unstable, std::vector<removal::SurfacePoint>& surface);
 
 /// 1-based lines of stamps, ascending, each once.
 std::vector<std::size_t> lines_of(const SimulatedProgram& program, std::span<const std::uint32_t> stamps);

@@ -33,6 +33,11 @@ std::string deflection_sentence(const SimulatedProgram& program, const Predictio
       lines.size() > kNamed ? fmt::format(" and {} more", lines.size() - kNamed) : "", left_out(p));
 }
 
+std::string chatter_doubt(const Prediction& p) {
+  return fmt::format("in {} tooth passings the cut chatters: {}; a stable spindle speed or depth was expected",
+                     p.chatter.invalid_stamps.size(), left_out(p));
+}
+
 }  // namespace
 
 double imbalance(double chip_mm3, double stock_mm3, double voxel_mm) {
@@ -76,6 +81,7 @@ std::string imbalance_sentence(double chip_mm3, double stock_mm3) {
 std::vector<std::string> doubts(const machine::Job& job, const SimulatedProgram& program, const Prediction& p) {
   std::vector<std::string> out;
   if (!p.cut.beyond_stamps.empty()) out.push_back(deflection_sentence(program, p));
+  if (!p.chatter.invalid_stamps.empty() && (beyond_model(p) || forces_beyond_model(p))) out.push_back(chatter_doubt(p));
   if (p.validity.all() && std::abs(imbalance(p.cut.chip_mm3, p.cut.stock_mm3, job.simulation.voxel_mm)) > kMaxImbalance)
     out.push_back(imbalance_sentence(p.cut.chip_mm3, p.cut.stock_mm3));
   if (p.surface.empty() && p.holes.surface_mm2 <= 0)

@@ -23,6 +23,7 @@
 #include "report/report_data.h"
 #include "report/spindle_load.h"
 #include "report/summary.h"
+#include "simulate/chatter.h"
 #include "simulate/spindle_power.h"
 #include "simulate/turn.h"
 #include "simulate/verdict.h"
@@ -209,6 +210,7 @@ void finish_prediction(const machine::Job& job, PreparedJob& prepared, simulate:
   prepared.setup.target.blank.clear();
   prepared.setup.target.map.reset();
   prediction.machined->clear_stamps();
+  simulate::warn_of_chatter(prepared.setup.program, prediction.chatter, of_cut);
   simulate::check_spindle_power(job.machine, prepared.setup.program, prediction.cut.loads, of_cut);
 }
 

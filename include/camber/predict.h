@@ -34,9 +34,11 @@ struct ForceRow {
   double torque_max_Nm = 0, torque_mean_Nm = 0, power_W = 0;
   double h_max_mm = 0, h_mean_mm = 0;  ///< uncut chip thickness
   double specific_energy_MPa = 0;
-  std::int64_t block = 0;    ///< 1-based line
-  double f_axial_max_N = 0;  ///< along the tool, towards the spindle; signed, of maximum magnitude
-  bool valid = true;         ///< the model holds in all of the row's tooth passings
+  std::int64_t block = 0;     ///< 1-based line
+  double f_axial_max_N = 0;   ///< along the tool, towards the spindle; signed, of maximum magnitude
+  bool valid = true;          ///< the model holds in all of the row's tooth passings
+  double chatter_margin = 0;  ///< depth over critical depth, the greatest of the row; above 1 the cut is unstable
+  double chatter_hz = 0;      ///< frequency that is heard at its border
 };
 
 /// A row of form_error.csv: a point of the nominal surface.

@@ -43,8 +43,9 @@ std::vector<std::string> examples_in(const std::string& help) {
 TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
   const TempFolder folder;
   const std::string samples = CAMBER_SOURCE_DIR "/samples/";
-  for (const char* sample : {"01-finishing", "03-force-fit", "10-raster", "11-feed-by-load", "12-five-axis",
-                             "14-copy-milling", "15-plan", "16-die-cavity", "17-study", "machines", "case_base.toml"})
+  for (const char* sample :
+       {"01-finishing", "03-force-fit", "10-raster", "11-feed-by-load", "12-five-axis", "14-copy-milling", "15-plan",
+        "16-die-cavity", "17-study", "23-chatter", "machines", "case_base.toml"})
     std::filesystem::copy(samples + sample, folder / sample, std::filesystem::copy_options::recursive);
   const auto names = subcommands(folder);
   EXPECT_GE(names.size(), 11u);
@@ -56,15 +57,17 @@ TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
     for (const std::string& example : examples) {
       EXPECT_EQ(example.rfind(name + " ", 0), 0u) << example;
       const bool part = example.find("--part") != std::string::npos;
-      const std::string from = folder / (name == "fit-force" ? "03-force-fit"
-                                         : name == "adapt"   ? "11-feed-by-load"
-                                         : name == "post"    ? "12-five-axis"
-                                         : name == "copy"    ? "14-copy-milling"
-                                         : name == "plan"    ? "15-plan"
-                                         : name == "posture" ? "16-die-cavity"
-                                         : name == "study"   ? "17-study"
-                                         : part              ? "10-raster"
-                                                             : "01-finishing");
+      const std::string from = folder / (name == "fit-force"   ? "03-force-fit"
+                                         : name == "adapt"     ? "11-feed-by-load"
+                                         : name == "post"      ? "12-five-axis"
+                                         : name == "copy"      ? "14-copy-milling"
+                                         : name == "plan"      ? "15-plan"
+                                         : name == "posture"   ? "16-die-cavity"
+                                         : name == "study"     ? "17-study"
+                                         : name == "lobes"     ? "23-chatter"
+                                         : name == "fit-modes" ? "23-chatter"
+                                         : part                ? "10-raster"
+                                                               : "01-finishing");
       const std::string command = "export HOME='" + folder.path() +
                                   "'; mkdir -p ~/.local/share/bash-completion/completions; cd '" + from + "' && '" +
                                   CAMBER_EXECUTABLE "' " + example + " > '" + (folder / "said") + "' 2>&1";
@@ -149,7 +152,7 @@ TEST(Completion, OffersCommandsOptionsAndValues) {
   ASSERT_EQ(script.status, 0);
   folder.write("completion", script.out);
   folder.write("finish.nc", "");
-  EXPECT_EQ(completed(folder, "camber fit"), "fit-feed fit-force\n");
+  EXPECT_EQ(completed(folder, "camber fit"), "fit-feed fit-force fit-modes\n");
   EXPECT_EQ(completed(folder, "camber predict --forces"), "--forces-at\n");
   EXPECT_EQ(completed(folder, "camber -q compensate --rep"), "--report\n");
   EXPECT_EQ(completed(folder, "camber check finish.nc --units \"\""), "mm inch\n");
@@ -172,7 +175,7 @@ TEST(Completion, OfFishOffersTheSame) {
   if (std::system("fish --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "fish is not installed";
   const TempFolder folder;
   folder.write("completion", run_camber(folder, "completion fish").out);
-  EXPECT_EQ(offered_by_fish(folder, "camber fit"), "fit-feed fit-force ");
+  EXPECT_EQ(offered_by_fish(folder, "camber fit"), "fit-feed fit-force fit-modes ");
   EXPECT_EQ(offered_by_fish(folder, "camber predict --forces"), "--forces-at ");
   EXPECT_EQ(offered_by_fish(folder, "camber check finish.nc --units "), "inch mm ");
   EXPECT_EQ(offered_by_fish(folder, "camber completion z"), "zsh ");
@@ -194,7 +197,7 @@ TEST(Completion, OfZshOffersTheSame) {
   if (std::system("zsh --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "zsh is not installed";
   const TempFolder folder;
   folder.write("completion", run_camber(folder, "completion zsh").out);
-  EXPECT_EQ(offered_by_zsh(folder, "camber fit"), "fit-feed fit-force ");
+  EXPECT_EQ(offered_by_zsh(folder, "camber fit"), "fit-feed fit-force fit-modes ");
   EXPECT_EQ(offered_by_zsh(folder, "camber predict --forces"), "--forces-at ");
   EXPECT_EQ(offered_by_zsh(folder, "camber -q compensate --rep"), "--report ");
   EXPECT_EQ(offered_by_zsh(folder, "camber check finish.nc --units \"\""), "mm inch ");

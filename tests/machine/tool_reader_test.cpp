@@ -39,6 +39,35 @@ Result read(const std::string& tool, const std::string& stock = "box_mm = [[0, 0
 
 const std::string kRest = "\nflutes = 3\noverhang_mm = 40\n";
 
+TEST(ToolReader, ReadsMeasuredModes) {
+  const auto r = read("type = \"flat\"\ndiameter_mm = 10" + kRest +
+                      "density_kg_per_m3 = 8000\n[[tool.1.mode]]\ndirection = \"x\"\nfrequency_Hz = 920.5\n"
+                      "damping_percent = 1.1\nstiffness_N_per_um = 1.34\n[[tool.1.mode]]\ndirection = \"y\"\n"
+                      "frequency_Hz = 950\ndamping_percent = 2\nstiffness_N_per_um = 3\n[[workpiece.mode]]\n"
+                      "direction = \"y\"\nfrequency_Hz = 300\ndamping_percent = 3\nstiffness_N_per_um = 40");
+  ASSERT_EQ(r.messages, "");
+  const Tool& t = r.job.tools.at(1);
+  EXPECT_EQ(t.density_kg_per_m3, 8000);
+  ASSERT_EQ(t.modes.size(), 2u);
+  EXPECT_EQ(t.modes[0].direction, Vec2(1, 0));
+  EXPECT_EQ(t.modes[0].frequency_hz, 920.5);
+  EXPECT_NEAR(t.modes[0].damping_ratio, 0.011, 1e-15);
+  EXPECT_NEAR(t.modes[0].stiffness_N_per_mm, 1340, 1e-9);
+  EXPECT_EQ(t.modes[1].direction, Vec2(0, 1));
+  ASSERT_EQ(r.job.workpiece_modes.size(), 1u);
+  EXPECT_EQ(r.job.workpiece_modes[0].frequency_hz, 300);
+}
+
+TEST(ToolReader, RefusesModesThatAreNone) {
+  const std::string tool = "type = \"flat\"\ndiameter_mm = 10" + kRest;
+  const auto messages = [&](const std::string& mode) { return read(tool + "[[tool.1.mode]]\n" + mode).messages; };
+  EXPECT_EQ(messages("direction = \"z\"\nfrequency_Hz = 900\ndamping_percent = 1\nstiffness_N_per_um = 2"), "");
+  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\nstiffness_N_per_um = 2"), "");
+  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\ndamping_percent = 0\nstiffness_N_per_um = 2"), "");
+  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\ndamping_percent = 1\nstiffness = 2"), "");
+  EXPECT_EQ(read(tool + "mode = 3").messages, "");
+}
+
 TEST(ToolReader, ReadsATaperedBallWithEverythingAToolCanHave) {
   const auto r = read("type = \"tapered_ball\"\ndiameter_mm = 4\ntaper_deg = 5" + kRest +
                       "flute_length_mm = 15\nneck_diameter_mm = 6\nneck_length_mm = 10\nshank_diameter_mm = 8\n"
