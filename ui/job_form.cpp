@@ -81,6 +81,11 @@ bool says_guess(std::string_view comment) {
   return comment.find("CHECK") != std::string_view::npos || comment.find("typical") != std::string_view::npos;
 }
 
+/// A comment line above a setting that begins with CHECK.
+bool has_check(std::string_view note) {
+  return note.starts_with("CHECK") || note.find("\nCHECK") != std::string_view::npos;
+}
+
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> out;
   while (!text.empty()) {
@@ -139,9 +144,9 @@ class Reader {
     place.last = at_;
     JobField& field = place.field;
     field = {tables_.back().first, setting.key, setting.value, setting.comment, note_, place.first + 1, is_default};
-    field.guessed = !is_default && (says_guess(setting.comment) || note_.find("CHECK") != std::string::npos);
+    field.guessed = !is_default && (says_guess(setting.comment) || has_check(note_));
     note_.clear();
-    if (!is_default || tables_.back().second < at_ + 1) tables_.back().second = at_ + 1;
+    if (!is_default) tables_.back().second = at_ + 1;
     (setting.key == kAssumed && !is_default ? assumed_ : places_).push_back(std::move(place));
   }
 
@@ -220,7 +225,7 @@ void drop_checks_above(std::vector<std::string>& lines, const JobEdit& edit) {
       reader.places_, [&](const Place& p) { return p.field.table == edit.table && p.field.key == edit.key; });
   if (found == reader.places_.end()) return;
   for (std::size_t i = found->first; i-- > 0 && lines[i].starts_with("#");)
-    if (lines[i].find("CHECK") != std::string::npos) lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(i));
+    if (lines[i].starts_with("# CHECK")) lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ struct JobField {
   std::string note;         ///< comment lines above it, since the setting before
   std::size_t line = 0;     ///< from 1
   bool is_default = false;  ///< stands as a comment: not set
-  bool guessed = false;     ///< in the table's list `assumed`, or its comment says "typical" or CHECK
+  bool guessed = false;     ///< in the table's list `assumed`, or its comment says "typical" or CHECK, or a line of the
+                            ///< note begins so
 };
 
 /// In the order of the text. The lists `assumed` are no fields. Text that is no TOML gives what can be made out.

@@ -185,12 +185,21 @@ void Runs::execute(int id) {
         process_->wait([&](std::string_view line) { update(id, [&](Run& r) { take_event(line, r.messages, &r); }); });
     finish(id, ended);
   } catch (const Refused& refused) {
-    update(id, [&](Run& r) { r.state = RunState::failed, r.messages.push_back(error(refused.why)); });
+    fail(id, refused.why);
   } catch (const std::exception& problem) {
-    update(id, [&](Run& r) { r.state = RunState::failed, r.messages.push_back(error(problem.what())); });
+    fail(id, problem.what());
   }
   const std::lock_guard lock(mutex_);
   process_.reset();
+}
+
+/// Before it has begun.
+void Runs::fail(int id, const std::string& why) {
+  update(id, [&](Run& r) {
+    r.state = RunState::failed;
+    r.begun = r.ended = std::time(nullptr);
+    r.messages.push_back(error(why));
+  });
 }
 
 /// The record of the run stays beside its results: the server may be another one tomorrow.

@@ -66,6 +66,7 @@ class Runs {
   void execute(int id);
   void update(int id, const std::function<void(Run&)>& change);
   void finish(int id, const Ended& ended);
+  void fail(int id, const std::string& why);
 
   const std::string executable_;
   const Folder& folder_;
