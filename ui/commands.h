@@ -27,8 +27,8 @@ std::string results_of(std::string_view job, std::string_view command);
 /// Throws Refused 400 for a command or an option that is none of these, or a file that is missing.
 Command run_command(const Folder& folder, const JobSummary& job, const std::string& name, const Options& options);
 
-/// camber check of a job, or of a program alone; figures, the path's points and the set-up sheet go to `scratch` with
-/// `stem` as the beginning of their names.
+/// camber check of a job, or of a program alone. Figures and the job's set-up sheet or the program's path go to
+/// `scratch` with `stem` as the beginning of their names.
 Command check_command(const JobSummary& job, const std::string& scratch, const std::string& stem);
 Command check_program_command(const std::string& program, const Options& options, const std::string& scratch,
                               const std::string& stem);

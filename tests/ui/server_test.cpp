@@ -263,12 +263,14 @@ TEST_F(Server, WritesAnEditOnlyWhereTheJobCanBeReadThen) {
     EXPECT_EQ(entry.path().filename().string().find("draft"), std::string::npos) << entry.path();
 }
 
-TEST_F(Server, ChecksAJobAndGivesItsPathAndSheet) {
+TEST_F(Server, ChecksAJobWithItsSheetAndAProgramWithItsPath) {
   const Workbench bench(folder_, "", "served");
   const json checked = bench.get("/api/check?job=wall/job.toml").json();
   EXPECT_EQ(checked["status"], 0) << checked;
   EXPECT_EQ(checked["figures"]["moves"]["linear"], 3);
-  const std::string path = bench.get("/files/" + checked["path"].get<std::string>()).body;
+  const json program = bench.get("/api/check?program=wall/p.nc&o.units=mm").json();
+  EXPECT_EQ(program["status"], 0) << program;
+  const std::string path = bench.get("/files/" + program["path"].get<std::string>()).body;
   const json head = json::parse(path.substr(0, path.find('\n')));
   EXPECT_EQ(head["points"], 5) << head;
   EXPECT_NE(bench.get("/files/" + checked["sheet"].get<std::string>()).body.find("<svg"), std::string::npos);

@@ -169,8 +169,7 @@ class Workbench {
     this.program = program;
     this.frame();
     this.head.textContent = program;
-    await this.showProgram(program);
-    await this.check({ program });
+    await this.showProgram(program, {});
   }
 
   async openJob(name) {
@@ -183,10 +182,11 @@ class Workbench {
       clear(this.head, h('b', {}, job.job), ' ', h('span', { className: 'note' }, job.programs.join(', ')));
       this.setup.figures = null;
       this.showJob(job);
-      await this.showProgram(this.program);
       this.tab(this.current || 'path');
       this.drawJobs();
-      await this.check({ job: name });
+      const units = job.fields.find(f => f.table === '' && f.key === 'units' && !f.is_default)?.value.slice(1, -1);
+      // The path is there long before the job is checked.
+      await Promise.all([this.program && this.showProgram(this.program, optionsOf({ units: units ?? '' })), this.check({ job: name })]);
     } catch (e) { this.said(e.message, true); }
   }
 
@@ -205,9 +205,14 @@ class Workbench {
     await this.check({ job: job.job });
   }
 
-  async showProgram(program) {
-    this.lines.setText(program ? await fileText(program) : '');
-    this.lines.setMarks(new Map());
+  async showProgram(program, options) {
+    const [lines, checked] = await Promise.all([fileText(program), get('api/check', { program, ...options })]);
+    if (program !== this.program) return;
+    this.lines.setText(lines);
+    if (this.marks) this.lines.setMarks(this.marks);
+    if (!this.job) this.showMessages(checked);
+    if (checked.path && this.scene) await this.showPath(checked.path);
+    document.documentElement.dataset.shown = program;
   }
 
   async saveText() {
@@ -226,6 +231,12 @@ class Workbench {
     let checked;
     try { checked = await get('api/check', what); } catch (e) { return this.said(e.message, true); }
     if (asked !== this.asked || checked.stopped) return;
+    this.showMessages(checked);
+    this.setup.setSheet(checked.sheet);
+  }
+
+  // At their lines and in the list.
+  showMessages(checked) {
     this.messages = checked.messages;
     const assumed = checked.figures?.assumed ?? [];
     this.said(checked.status === 0 ? text('checked') : `${text('check_failed')}: ${checked.messages.find(m => m.severity === 'error')?.message ?? ''}`, checked.status !== 0);
@@ -241,15 +252,13 @@ class Workbench {
     clear(this.messageList, checked.messages.length + assumed.length === 0 ? h('li', {}, text('no_messages')) : null,
       checked.messages.map(m => h('li', { className: m.severity, onclick: () => m.file === this.program && this.goTo(m.line) }, m.line ? h('b', {}, `${baseName(m.file)}:${m.line} `) : null, m.message)),
       assumed.map(a => h('li', { className: 'note' }, `${text('guess')}: ${a}`)));
-    this.setup.setSheet(checked.sheet);
-    if (checked.path && this.scene) await this.showPath(checked.path);
+    if (this.by === 'message') this.colour();
     document.documentElement.dataset.checked = String(Number(document.documentElement.dataset.checked ?? 0) + 1);
   }
 
   async showPath(name) {
-    const path = readPath(await fileBytes(name)), same = this.scene.path && this.pathOf === this.program && path.count === this.scene.path.count;
-    if (!same) this.scene.setPath(path);
-    this.pathOf = this.program;
+    const path = readPath(await fileBytes(name));
+    this.scene.setPath(path);
     const tools = [...new Set(path.tool)].sort((a, b) => a - b);
     this.toolNumber = '';
     clear(this.toolChoice, tools.length > 1 ? select(text('tool'), [['', text('tool_all')], ...tools.map(t => [t, 'T' + t])], '', t => { this.toolNumber = t; this.showKinds(); }) : null);
