@@ -155,6 +155,11 @@ class Server {
     http_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
     http_.set_keep_alive_max_count(1);  // what a refused request has behind it is no further request
     http_.set_keep_alive_timeout(2);
+    // The library would share the port with any other server that asks for it.
+    http_.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
     http_.set_payload_max_length(options.max_upload_bytes);
     http_.set_default_headers({{"X-Content-Type-Options", "nosniff"},
                                {"Referrer-Policy", "no-referrer"},

@@ -100,7 +100,8 @@ class Workbench {
       select(text('colour_by'), ['kind', 'tool', 'feed', 'message'].map(b => [b, text('by_' + b)]), 'kind', b => { this.by = b; this.colour(); }),
       this.toolChoice = h('span', {}),
       h('label', {}, this.rapids = h('input', { type: 'checkbox', checked: true, onchange: () => this.showKinds() }), ' ', text('rapids')),
-      h('span', { className: 'choice' }, VIEW_NAMES.map(v => h('button', { type: 'button', data: { view: v }, onclick: () => this.scene?.look(v) }, text('view_' + v)))));
+      h('span', { className: 'choice' }, VIEW_NAMES.map(v => h('button', { type: 'button', data: { view: v }, onclick: () => this.scene?.look(v) }, text('view_' + v)))),
+      h('button', { type: 'button', onclick: () => this.savePicture() }, text('save_picture')));
     this.tab('path');
   }
 
@@ -264,6 +265,14 @@ class Workbench {
     clear(this.toolChoice, tools.length > 1 ? select(text('tool'), [['', text('tool_all')], ...tools.map(t => [t, 'T' + t])], '', t => { this.toolNumber = t; this.showKinds(); }) : null);
     this.colour();
     this.showStockAndPart();
+  }
+
+  savePicture() {
+    this.sceneBox.querySelector('canvas')?.toBlob(blob => {
+      const address = URL.createObjectURL(blob);
+      h('a', { href: address, download: `${baseName(this.program)}.png` }).click();
+      URL.revokeObjectURL(address);
+    });
   }
 
   showKinds() { this.scene?.show({ rapids: this.rapids.checked, tool: this.toolNumber }); }
