@@ -138,7 +138,7 @@ class Workbench {
     const of = name => job.results.find(r => r.command === name)?.figures;
     const compensated = of('compensate'), predicted = of('predict'), rms = f => f?.rms?.toFixed(1);
     const before = rms(compensated?.before_um) ?? rms(predicted?.form_error_um), after = rms(compensated?.after_um);
-    const time = predicted?.machine_time_s ?? of('time')?.total_s ?? of('feed')?.time_s;
+    const time = compensated?.machine_time_s?.after ?? predicted?.machine_time_s ?? of('time')?.total_s ?? of('feed')?.time_s;
     return [before && `${before}${after ? ` → ${after}` : ''} µm`, typeof time === 'number' && clock(time)].filter(Boolean).join(' · ');
   }
 
