@@ -81,11 +81,12 @@ export class Setup {
     return list;
   }
 
-  marks(field) {
+  // short: in a table, where the colour says that the value is a guess.
+  marks(field, short) {
     if (field.is_default) return [h('span', { className: 'badge' }, text('not_set'))];
     if (!field.guessed) return [];
     return [h('span', { className: 'badge guess' }, text('guess')),
-      h('button', { type: 'button', className: 'small', title: text('confirm_title'), 'aria-label': `${text('confirm')} ${field.table} ${field.key}`, onclick: () => this.edit(['confirm', field.table, field.key]) }, text('confirm'))];
+      h('button', { type: 'button', className: 'small', title: text('confirm_title'), 'aria-label': `${text('confirm')} ${field.table} ${field.key}`, onclick: () => this.edit(['confirm', field.table, field.key]) }, short ? '\u2713' : text('confirm'))];
   }
 
   row(field) {
@@ -107,7 +108,7 @@ export class Setup {
     const cell = (name, key) => {
       const field = this.field(name, key);
       if (!field) return h('td', {});
-      return h('td', { className: field.guessed ? 'guessed' : '', title: field.comment }, h('span', { className: 'field inline' }, this.input(field), this.marks(field).slice(-1), h('span', { className: 'wrong-text', role: 'alert' })));
+      return h('td', { className: field.guessed ? 'guessed' : '', title: field.comment }, h('span', { className: 'field inline' }, this.input(field), field.guessed ? this.marks(field, true).slice(-1) : null, h('span', { className: 'wrong-text', role: 'alert' })));
     };
     this.drawings = h('div', { className: 'drawings', 'aria-label': text('drawings') });
     const others = names.flatMap(n => this.job.fields.filter(f => f.table === n && !TOOL_KEYS.includes(f.key)).map(f => h('div', {}, h('b', {}, 'T' + n.slice(5)), this.row(f))));
@@ -115,7 +116,7 @@ export class Setup {
       h('div', { className: 'wide' }, h('table', { className: 'tools' },
         h('thead', {}, h('tr', {}, h('th', {}, ''), TOOL_KEYS.map(k => h('th', {}, k.replace(/_(mm|deg|N_per_um)$/, ''), ' ', h('small', {}, unitOf(k)))))),
         h('tbody', {}, names.map(n => h('tr', { data: { tool: n.slice(5) } }, h('th', {}, 'T' + n.slice(5)), TOOL_KEYS.map(k => cell(n, k))))))),
-      this.drawings, h('details', {}, h('summary', {}, '…'), others));
+      this.drawings, h('details', {}, h('summary', {}, text('tools_more')), others));
   }
 
   // The drawings of the set-up sheet, which the check has just written.

@@ -252,7 +252,7 @@ class Workbench {
     this.lines.setMarks(this.marks);
     clear(this.messageList, checked.messages.length + assumed.length === 0 ? h('li', {}, text('no_messages')) : null,
       checked.messages.map(m => h('li', { className: m.severity, onclick: () => m.file === this.program && this.goTo(m.line) }, m.line ? h('b', {}, `${baseName(m.file)}:${m.line} `) : null, m.message)),
-      assumed.map(a => h('li', { className: 'note' }, `${text('guess')}: ${a}`)));
+      assumed.map(a => h('li', { className: 'note link', onclick: () => this.tab('setup') }, `${text('guess')}: ${a}`)));
     if (this.by === 'message') this.colour();
     document.documentElement.dataset.checked = String(Number(document.documentElement.dataset.checked ?? 0) + 1);
   }
