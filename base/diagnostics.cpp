@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "base/confined_files.h"
+
 namespace camber {
 
 namespace {
@@ -137,6 +139,7 @@ std::size_t SourceText::next_line(std::size_t from) const {
 }
 
 SourceText SourceText::read(const std::string& path) {
+  require_confined(path);
   std::error_code ec;
   if (!std::filesystem::exists(path, ec)) fail_on_file(path, "no such file", "file-missing");
   if (std::filesystem::is_directory(path, ec))

@@ -18,6 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/confined_files.h"
 #include "base/diagnostics.h"
 
 namespace camber {
@@ -224,6 +225,7 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), place_(behind
     if (!stream_) fail_on_file("standard output", "cannot be written", "file-unwritable");
     return;
   }
+  require_confined(path_);
   {
     const Opening guard;
     errno = 0;
@@ -270,6 +272,7 @@ void OutputFile::commit() {
 
 void require_writable(const std::string& path) {
   if (path.empty() || (path == "-" && standard_output >= 0)) return;
+  require_confined(path);
   const auto refuse = [&](const std::string& why) {
     fail_on_file(path, "cannot be written: " + why, "file-unwritable");
   };
@@ -298,6 +301,7 @@ void write_file(const std::string& path, std::string_view content) {
 }
 
 void make_folder(const std::string& path) {
+  require_confined(path);
   std::error_code ec;
   std::vector<std::string> missing;
   for (fs::path at = fs::absolute(path).lexically_normal(); !fs::exists(at, ec) && at.has_relative_path();

@@ -22,6 +22,7 @@
 #include "machine/job_programs.h"
 #include "nc/language.h"
 #include "nc/program.h"
+#include "report/path_arrays.h"
 #include "report/planned_picture.h"
 #include "report/setup_sheet.h"
 
@@ -78,6 +79,8 @@ Checked read_and_summarize(const CheckCommand& command, const std::optional<mach
     checked.assumed = machine::assumptions(*machine);
   bool shows_machine = false;
   const auto read = [&](const nc::Interpretation& moves) {
+    if (!command.path.empty())
+      report::write_path_arrays(command.path, report::program_picture(moves, report::kMaxPathPoints));
     if (command.report.empty()) return;
     checked.picture = picture_of(moves, machine ? &*machine : nullptr, job ? &*job : nullptr);
     checked.summary = nc::summarize(text, moves);
@@ -206,6 +209,7 @@ int run_check(const CheckCommand& given, Diagnostics& diagnostics, std::ostream&
       const std::string left = fmt::format("{}/{}.vdb", folder.path(), i);
       api::save_swept_stock(api::job_of_program(*all, i - 1, stock), left);
       stock = left;
+      command.path.clear();
     }
     std::optional<machine::Job> own;
     if (all) own = api::job_of_program(*all, i, stock);

@@ -16,6 +16,7 @@ struct CheckCommand {
   std::string program;             ///< empty: the job's
   std::string json;                ///< file for the figures; empty: none
   std::string report;              ///< page with the path's picture; empty: none
+  std::string path{};              ///< file for the path's points; of several programs the first; empty: none
   std::string machine;             ///< machine.toml; empty: none
   std::string job;                 ///< job.toml, whose machine counts; empty: none
   std::string sheet{};             ///< set-up sheet; needs a job; empty: none

@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
+#include "base/confined_files.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/mpi_run.h"
@@ -33,6 +34,11 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.add_option("--threads", options.threads, "number of threads; 0: all processors")
       ->check(CLI::Range(0, kMaxThreads))
       ->type_name("N");
+  app.add_flag("--events", options.events,
+               "messages and progress as lines of JSON on stderr, for programs that run this one");
+  app.add_option("--only-in", options.only_in, "read and write files in this folder alone")
+      ->check(CLI::ExistingDirectory.description(""))
+      ->type_name("DIR");
   app.add_flag("--effective-config", options.effective_config,
                "print the job and the machine with all defaults filled in, and exit");
 }
@@ -123,6 +129,7 @@ int run(int argc, const char* const* argv) {
   add_plan_command(app, options, chosen);
   add_force_commands(app, options, chosen);
   add_dynamics_commands(app, options, chosen);
+  add_ui_command(app, options, chosen);
   add_help(app, chosen);
   try {
     app.parse(argc, argv);
@@ -137,8 +144,13 @@ int run(int argc, const char* const* argv) {
   }
   if (json_to_standard_output(app)) claim_standard_output();
   remove_parts_on_signals();
+  if (options.events) write_events();
   const auto limit = thread_limit(options.threads);
-  const int status = guarded(chosen, options);
+  const auto confined = [&] {
+    if (!options.only_in.empty()) confine_files(options.only_in);
+    return chosen();
+  };
+  const int status = guarded(confined, options);
   remove_empty_folders();
   return status;
 }

@@ -22,6 +22,7 @@ void add_dynamics_commands(CLI::App& app, const GlobalOptions& options, Action& 
 void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 /// predict, compensate, adapt, study
 void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_ui_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 /// completion, and an example for each of the subcommands that are there; to be called last.
 void add_help(CLI::App& app, Action& chosen);

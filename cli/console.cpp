@@ -16,7 +16,36 @@ std::string coloured(std::string_view text, std::string_view colour) {
   return fmt::format("{}{}{}", colour, text, kPlain);
 }
 
+bool events = false;
+
+Json event_of(const Diagnostic& d) {
+  return {{"event", "diagnostic"},
+          {"severity", d.severity == Severity::error ? "error" : "warning"},
+          {"file", d.location.file},
+          {"line", d.location.line},
+          {"column", d.location.column},
+          {"message", d.message},
+          {"check", d.check},
+          {"source_line", d.source_line}};
+}
+
+void print_diagnostic(const Diagnostic& d) {
+  if (events)
+    print_event(event_of(d));
+  else
+    fmt::print(stderr, "{}\n", diagnostic_text(d, colour_wanted()));
+}
+
 }  // namespace
+
+void write_events() { events = true; }
+bool events_wanted() { return events; }
+
+void print_event(const Json& event) {
+  const std::string line = event.dump() + "\n";
+  std::fwrite(line.data(), 1, line.size(), stderr);  // holds the stream's lock
+  std::fflush(stderr);
+}
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) != 0; }
 
@@ -39,8 +68,7 @@ std::string diagnostic_text(const Diagnostic& diagnostic, bool colour) {
 
 void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOptions& options) {
   for (const auto& d : diagnostics)
-    if (!options.quiet || d.severity == Severity::error)
-      fmt::print(stderr, "{}\n", diagnostic_text(d, colour_wanted()));
+    if (!options.quiet || d.severity == Severity::error) print_diagnostic(d);
 }
 
 void settle(const Diagnostics& diagnostics, const GlobalOptions& options) {
@@ -55,6 +83,7 @@ void print_translation(std::span<const std::string> translation, const GlobalOpt
 }
 
 void print_error(const std::string& sentence) {
+  if (events) return print_event({{"event", "error"}, {"message", sentence}});
   fmt::print(stderr, "camber: {} {}\n", colour_wanted() ? coloured("error:", kRed) : "error:", sentence);
 }
 

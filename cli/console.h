@@ -4,11 +4,23 @@
 #include <string>
 
 #include "base/diagnostics.h"
+#include "base/json.h"
 #include "cli/global_options.h"
 
 namespace camber::cli {
 
 bool stderr_is_terminal();
+
+/// From now on diagnostics, errors and progress are lines of JSON on stderr, for programs that run this one:
+///   {"event": "diagnostic", "severity", "file", "line", "column", "message", "check", "source_line"}
+///   {"event": "error", "message"}
+///   {"event": "progress", "what", "share", "left_s"}     share: of the step, 0 to 1; left_s: of the step; null:
+///   unknown
+void write_events();
+bool events_wanted();
+/// One such line; the other threads' lines stay whole.
+void print_event(const Json& event);
+
 /// A terminal, and no NO_COLOR in the environment (https://no-color.org).
 bool colour_wanted();
 

@@ -17,6 +17,8 @@ struct GlobalOptions {
   bool quiet = false;             ///< only errors are printed
   int verbosity = 0;              ///< number of -v
   int threads = 0;                ///< 0: as many as the computer has
+  bool events = false;            ///< diagnostics, errors and progress as lines of JSON on stderr
+  std::string only_in{};          ///< the only folder in which files are read and written; empty: anywhere
   bool effective_config = false;  ///< print the configuration with every default filled in, and stop
 };
 

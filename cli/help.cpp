@@ -58,6 +58,9 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
     {"posture",
      "camber posture finish.nc --job job.toml -o finish_5x.nc\n"
      "  camber posture finish.nc --job job.toml -o finish_5x.nc --overhang 10 --json figures.json"},
+    {"ui",
+     "camber ui jobs\n"
+     "  camber ui jobs --no-open --port 8123"},
     {"completion", "camber completion bash > ~/.local/share/bash-completion/completions/camber"}};
 
 }  // namespace

@@ -154,6 +154,8 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   add_work_offsets(*command, arguments->interpreter);
   auto* page = command->add_option("--report", arguments->report, "report page with a picture of the path");
   page->type_name("R.html");
+  command->add_option("--path", arguments->path, "the path's points with line, tool and feed, as arrays for pictures")
+      ->type_name("P.bin");
   auto* sheet = command->add_option("--sheet", arguments->sheet,
                                     "set-up sheet for A4: blank and zero, tools to scale, offsets, limits, times");
   sheet->type_name("OUT.html")->needs("--job");
@@ -173,7 +175,7 @@ void add_check(CLI::App& app, const GlobalOptions& options, Action& chosen) {
     if (arguments->program.empty() && arguments->job.empty() && arguments->explain_kinematics.empty())
       throw CLI::RequiredError("program or --job");
     chosen = [arguments, &options] {
-      check_outputs({arguments->json, arguments->report, arguments->sheet},
+      check_outputs({arguments->json, arguments->report, arguments->sheet, arguments->path},
                     {arguments->program, arguments->machine, arguments->job, arguments->explain_kinematics});
       return check(*arguments, options);
     };

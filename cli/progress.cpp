@@ -17,6 +17,19 @@ constexpr double kShownAfter_s = 1;
 constexpr double kMinShareForTime = 0.05;
 constexpr int kBarWidth = 24;
 
+/// Seconds that the rest needs at the pace so far; nothing where nobody can say.
+std::optional<double> seconds_left(std::optional<double> share, double seconds_so_far) {
+  if (!share || *share < kMinShareForTime || seconds_so_far < 1) return std::nullopt;
+  return seconds_so_far * (1 - std::min(*share, 1.0)) / *share;
+}
+
+Json progress_event(const std::string& what, std::optional<double> share, double seconds_so_far) {
+  Json event{{"event", "progress"}, {"what", what}, {"share", nullptr}, {"left_s", nullptr}};
+  if (share) event["share"] = std::clamp(*share, 0.0, 1.0);
+  if (const auto left = seconds_left(share, seconds_so_far)) event["left_s"] = *left;
+  return event;
+}
+
 std::string time_text(double seconds, const char* what) {
   return seconds < 100 ? fmt::format(", {:.0f} s {}", seconds, what)
                        : fmt::format(", {:.0f} min {}", seconds / 60, what);
@@ -30,12 +43,14 @@ std::string progress_text(std::string_view what, std::optional<double> share, do
   const auto filled = static_cast<std::size_t>(done * kBarWidth);
   std::string out = fmt::format("{:3.0f} % [{}{}] {}", std::floor(100 * done), std::string(filled, '#'),
                                 std::string(kBarWidth - filled, '.'), what);
-  if (done < kMinShareForTime || seconds_so_far < 1) return out;
-  return out + time_text(seconds_so_far * (1 - done) / done, "left");
+  const auto left = seconds_left(done, seconds_so_far);
+  return left ? out + time_text(*left, "left") : out;
 }
 
 ProgressLine::ProgressLine(const GlobalOptions& options, std::string what)
-    : enabled_(!options.quiet && stderr_is_terminal()), what_(std::move(what)), begin_(Clock::now()) {
+    : enabled_(events_wanted() || (!options.quiet && stderr_is_terminal())),
+      what_(std::move(what)),
+      begin_(Clock::now()) {
   if (enabled_) drawing_ = std::thread([this] { redraw_until_stopped(); });
 }
 
@@ -72,6 +87,7 @@ void ProgressLine::redraw_until_stopped() {
 
 void ProgressLine::draw(Clock::time_point now) {
   const double seconds = std::chrono::duration<double>(now - begin_).count();
+  if (events_wanted()) return print_event(progress_event(what_, share_, seconds));
   if (!shown_ && seconds < kShownAfter_s) return;
   shown_ = true;
   fmt::print(stderr, "\r\033[K{}", progress_text(what_, share_, seconds));

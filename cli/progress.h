@@ -20,7 +20,7 @@ using ProgressCallback = std::function<void(std::string_view what, double share)
 /// Steps whose share of work is not known show for how long they have been going on.
 class ProgressLine {
  public:
-  /// Begins with `what`. Silent with -q and where stderr is not a terminal.
+  /// Begins with `what`. Silent with -q and where stderr is not a terminal; with --events lines of JSON instead.
   ProgressLine(const GlobalOptions& options, std::string what);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include "base/confined_files.h"
 #include "base/units.h"
 #include "machine/job_keys.h"
 #include "machine/library_words.h"
@@ -30,6 +31,7 @@ struct CloseStatement {
 class Database {
  public:
   explicit Database(const std::string& path) : path_(path) {
+    require_confined(path);
     std::error_code ec;
     if (!std::filesystem::exists(path, ec)) fail_on_file(path, "no such file", "file-missing");
     // Immutable: nothing is written beside the file, not even for a database that its program has open.

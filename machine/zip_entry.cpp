@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <zip.h>
 
+#include "base/confined_files.h"
+
 namespace camber::machine {
 namespace {
 
@@ -20,6 +22,7 @@ struct Close {
 }  // namespace
 
 SourceText read_zip_entry(const std::string& path, const std::string& ending, const std::string& check) {
+  require_confined(path);
   std::error_code ec;
   if (!std::filesystem::exists(path, ec)) fail_on_file(path, "no such file", "file-missing");
   int error = 0;

@@ -22,6 +22,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "base/confined_files.h"
 #include "base/diagnostics.h"
 #include "base/output_file.h"
 #include "base/stage.h"
@@ -745,6 +746,7 @@ namespace {
 
 /// The first float grid of a file, or one named "stock".
 openvdb::FloatGrid::Ptr read_float_grid(const std::string& path) {
+  require_confined(path);
   if (!std::filesystem::exists(path)) fail_on_file(path, "no such file", "file-missing");
   openvdb::FloatGrid::Ptr found;
   try {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include "base/confined_files.h"
 #include "base/numbers.h"
 #include "base/units.h"
 #include "machine/force_law.h"
@@ -29,6 +30,7 @@ std::string value_text(double value, int digits = 6) {
 }
 
 std::optional<std::string> file_text(const std::string& path) {
+  require_confined(path);
   std::ifstream in(path, std::ios::binary);
   if (!in) return std::nullopt;
   return std::string(std::istreambuf_iterator<char>(in), {});
@@ -120,6 +122,7 @@ TextTable inputs_table(const Job& job) {
 }
 
 std::map<std::string, std::string> stated_errors(const std::string& path) {
+  require_confined(path);
   std::map<std::string, std::string> out;
   std::ifstream in(path);
   static const std::regex kLine(R"(#\s*(\w+):\s*\S+\s*\+-\s*(\S+).*)");

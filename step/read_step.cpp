@@ -19,6 +19,7 @@
 #include <opencascade/TopoDS_Face.hxx>
 #include <opencascade/TopoDS_Shape.hxx>
 
+#include "base/confined_files.h"
 #include "base/diagnostics.h"
 #include "base/mesh_file.h"
 #include "base/units.h"
@@ -84,6 +85,7 @@ TopoDS_Shape shape_of(const std::string& path) {
 }  // namespace
 
 TriangleMesh read_step(const std::string& path) {
+  require_confined(path);
   if (!std::ifstream(path)) fail_on_file(path, "cannot be opened; a STEP file was expected", "file-missing");
   silence();
   try {

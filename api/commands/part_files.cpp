@@ -9,6 +9,7 @@
 
 #include "api/commands/sections.h"
 #include "base/bytes.h"
+#include "base/confined_files.h"
 #include "base/output_file.h"
 #include "compensate/header.h"
 
@@ -50,6 +51,7 @@ void read_head(ByteReader& in, PartFile& out) {
 }
 
 std::string bytes_of_file(const std::string& path) {
+  require_confined(path);
   std::ifstream in(path, std::ios::binary);
   std::string out(static_cast<std::size_t>(fs::file_size(path)), '\0');
   in.read(out.data(), static_cast<std::streamsize>(out.size()));
@@ -64,6 +66,7 @@ struct PartHead {
   std::uint64_t begin = 0, bytes = 0;
 };
 std::optional<PartHead> head_of_file(const std::string& path) {
+  require_confined(path);
   constexpr std::size_t kBefore = kMagic.size() + kHashLength, kTogether = std::size_t{1} << 20;
   std::ifstream in(path, std::ios::binary);
   std::string before(kBefore, '\0'), bytes(kTogether, '\0');

@@ -14,6 +14,7 @@
 #include "camber/post.h"
 #include "camber/posture.h"
 #include "camber/predict.h"
+#include "camber/presets.h"
 #include "camber/program.h"
 #include "camber/run.h"
 #include "camber/sections.h"

@@ -1,13 +1,13 @@
-// build.mjs SOURCES PACKAGES OUT: bundles main.js, path.js and machine.js with their style and packages into the folder
-// OUT. PACKAGES: a folder whose node_modules hold what package-lock.json names. scripts/bundle-page calls it.
+// build.mjs SOURCES PACKAGES OUT SCRIPT...: bundles scripts with their style and packages into the folder OUT. PACKAGES: a folder whose node_modules hold what package-lock.json names. scripts/bundle-page calls it.
 import { createRequire } from 'node:module';
 import { writeFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 
-const [sources, packages, out] = process.argv.slice(2).map(path => resolve(path));
+const [sources, packages, out] = process.argv.slice(2, 5).map(path => resolve(path));
+const scripts = process.argv.slice(5);
 const esbuild = createRequire(join(packages, 'package.json'))('esbuild');
 const result = await esbuild.build({
-  entryPoints: [join(sources, 'main.js'), join(sources, 'path.js'), join(sources, 'machine.js')],
+  entryPoints: scripts.map(script => join(sources, script)),
   bundle: true,
   minify: true,
   format: 'iife',

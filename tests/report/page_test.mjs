@@ -122,6 +122,15 @@ const CHECKS = {
     const after = await pixels(page);
     expect(after.red + after.blue < 0.1 * (before.red + before.blue), `after is as coloured as before: ${JSON.stringify(after)}`);
     await page.click('button[data-value=before]');
+    const slider = page.getByLabel('Place of the cut'), cutAt = share => slider.evaluate((e, v) => { e.value = v; e.dispatchEvent(new Event('input')); }, share);
+    await page.getByLabel('Cut', { exact: true }).selectOption('0');
+    await cutAt(0.25);
+    const cut = await pixels(page);
+    expect(cut.red + cut.blue < 0.5 * (before.red + before.blue) && cut.red + cut.blue > 0.05 * (before.red + before.blue), `of ${JSON.stringify(before)} a cut at a quarter leaves ${JSON.stringify(cut)}`);
+    await cutAt(1);
+    const uncut = await pixels(page);
+    expect(Math.abs(uncut.red + uncut.blue - before.red - before.blue) < 0.05 * (before.red + before.blue), 'a cut at the end takes something away');
+    await page.getByLabel('Cut', { exact: true }).selectOption('');
     await page.click('button[data-value=plain]');
     await page.getByLabel('Path').selectOption('force');
     const path = await pixels(page);

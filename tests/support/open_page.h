@@ -1,5 +1,5 @@
 #pragma once
-// Opens a report page in headless Chromium (tests/report/page_test.mjs).
+// Opens pages in headless Chromium (tests/report/page_test.mjs, tests/ui/page_test.mjs).
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -15,10 +15,10 @@ inline bool has_browser() {
          std::filesystem::exists(CAMBER_WEB_DIR "/node_modules/playwright-core");
 }
 
-/// What the check found wrong, a line each; empty: nothing.
-inline std::string open_page(const std::string& check, const std::string& page, const std::string& json = {}) {
-  std::string command = "node '" CAMBER_SOURCE_DIR "/tests/report/page_test.mjs' '" CAMBER_WEB_DIR "' " + check + " '" +
-                        page + "' " + (json.empty() ? "" : "'" + json + "' ") + "2>&1";
+/// Runs tests/ROOM/page_test.mjs with these arguments. What the check found wrong, a line each; empty: nothing.
+inline std::string run_page_script(const std::string& room, const std::string& arguments) {
+  const std::string command =
+      "node '" CAMBER_SOURCE_DIR "/tests/" + room + "/page_test.mjs' '" CAMBER_WEB_DIR "' " + arguments + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return "node could not be started";
   std::string out;
@@ -27,6 +27,11 @@ inline std::string open_page(const std::string& check, const std::string& page, 
   const int status = pclose(pipe);
   if (status != 0 && out.empty()) out = "the check failed without a word";
   return out;
+}
+
+/// A report page.
+inline std::string open_page(const std::string& check, const std::string& page, const std::string& json = {}) {
+  return run_page_script("report", check + " '" + page + "'" + (json.empty() ? "" : " '" + json + "'"));
 }
 
 }  // namespace camber::tests

@@ -69,6 +69,7 @@ class Page {
       scale.list.value = String(scales[0]);
       box.append(scale.box);
     }
+    if (surface) box.append(this.cutControl());
     if (stock) box.append(choice('Stock', [['shown', 'Shown'], ['hidden', 'Hidden']], shown => this.scene.showStock(shown === 'shown')).box);
     if (runs.length)
       box.append(menu('Path', [['', 'hidden'], ...present(runs).map(q => [q, 'by ' + QUANTITIES[q].name])], q => { this.quantity = q || null; this.update(); }).box);
@@ -80,6 +81,19 @@ class Page {
     }
     box.append(views);
     if (this.page.machine) this.machineControls(box);
+  }
+
+  // A plane across an axis that takes away what lies beyond it.
+  cutControl() {
+    const where = element('input', { type: 'range', min: 0, max: 1, step: 0.005, value: 0.5, ariaLabel: 'Place of the cut', hidden: true }), at = element('span');
+    const axes = menu('Cut', [['', 'none'], ['0', 'across X'], ['1', 'across Y'], ['2', 'across Z']], () => show());
+    const show = () => {
+      where.hidden = axes.list.value === '';
+      const mm = this.scene.setCut(where.hidden ? null : Number(axes.list.value), Number(where.value));
+      at.textContent = where.hidden ? '' : `${'XYZ'[axes.list.value]} ${fixed(mm, 2)} mm`;
+    };
+    where.addEventListener('input', show);
+    return element('span', { className: 'choice' }, axes.box, where, at);
   }
 
   // Of a program with rotary motion: how the table turns the part.

@@ -1,7 +1,7 @@
 // The part and the path in 3-D.
 import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, OrthographicCamera,
-  Raycaster, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
+  Raycaster, Scene, ShaderMaterial, Vector2, Vector3, Vector4, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
@@ -18,9 +18,11 @@ attribute float error0;
 attribute float error1;
 attribute float contour;
 uniform int mode;
-varying float value;
+uniform vec4 cut;
+varying float value, beyond;
 varying vec3 turned;
 void main() {
+  beyond = dot(position, cut.xyz) - cut.w;
   value = mode == 0 ? error0 : mode == 1 ? error1 : mode == 2 ? error1 - error0 : mode == 4 ? error0 - contour : contour;
   turned = normalize(normalMatrix * normal);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
@@ -30,10 +32,11 @@ void main() {
 const FRAGMENT = `
 uniform int mode;
 uniform float limit;
-varying float value;
+varying float value, beyond;
 varying vec3 turned;
 ${DIVERGING_GLSL}
 void main() {
+  if (beyond > 0.0) discard;
   vec3 n = normalize(turned);
   vec3 base = mode == 3 ? vec3(0.80, 0.83, 0.87) : diverging(0.5 + 0.5 * value / limit);
   float light = 0.70 + 0.30 * max(0.0, dot(n, normalize(vec3(0.35, 0.55, 0.75))));
@@ -44,8 +47,11 @@ void main() {
 // The stock around is coarse: it lies a cell farther away than it is, so that it hides nothing of the surface.
 const STOCK_VERTEX = `
 uniform float back;
+uniform vec4 cut;
 varying vec3 eye;
+varying float beyond;
 void main() {
+  beyond = dot(position, cut.xyz) - cut.w;
   vec4 at = modelViewMatrix * vec4(position, 1.0);
   eye = at.xyz;
   at.z -= back;
@@ -55,7 +61,9 @@ void main() {
 // Flat, and darker than white, which is an error of nothing.
 const STOCK_FRAGMENT = `
 varying vec3 eye;
+varying float beyond;
 void main() {
+  if (beyond > 0.0) discard;
   vec3 n = normalize(cross(dFdx(eye), dFdy(eye)));
   float light = 0.72 + 0.28 * max(0.0, dot(n.z < 0.0 ? -n : n, normalize(vec3(0.35, 0.55, 0.75))));
   gl_FragColor = vec4(vec3(0.66, 0.69, 0.73) * light, 1.0);
@@ -86,6 +94,7 @@ export class PartScene {
     this.scene.background = new Color('#f3f5f8').convertLinearToSRGB();
     this.renderer.outputColorSpace = 'srgb-linear';  // colours are given as they are shown
     this.run = 0;
+    this.cut = { value: new Vector4() };  // what lies beyond the plane is not drawn: x, y, z of its normal, and how far along it
     this.camera = new OrthographicCamera();
     this.camera.up.set(0, 0, 1);
     // What is fixed to the part, and turns with it.
@@ -124,7 +133,7 @@ export class PartScene {
     geometry.setIndex(new BufferAttribute(surface.triangles, 1));
     return new Mesh(geometry, new ShaderMaterial({
       vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide,
-      uniforms: { mode: { value: 0 }, limit: { value: this.page.scales[0] } },
+      uniforms: { mode: { value: 0 }, limit: { value: this.page.scales[0] }, cut: this.cut },
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2,  // the path lies on it
     }));
   }
@@ -134,7 +143,7 @@ export class PartScene {
     geometry.setAttribute('position', new BufferAttribute(stock.place, 3));
     geometry.setIndex(new BufferAttribute(stock.triangles, 1));
     this.stock = new Mesh(geometry, new ShaderMaterial({
-      vertexShader: STOCK_VERTEX, fragmentShader: STOCK_FRAGMENT, side: DoubleSide, uniforms: { back: { value: stock.cell } },
+      vertexShader: STOCK_VERTEX, fragmentShader: STOCK_FRAGMENT, side: DoubleSide, uniforms: { back: { value: stock.cell }, cut: this.cut },
     }));
     this.part.add(this.stock);
     this.deep = Math.hypot(...whole.middle.map((v, k) => v - this.middle[k])) + whole.radius;
@@ -229,6 +238,24 @@ export class PartScene {
     this.render();
   }
 
+  // axis: 0, 1, 2 or null for none; share: of the surface's extent along it that stays. Returns the place of the cut, mm.
+  setCut(axis, share) {
+    if (axis === null) this.cut.value.set(0, 0, 0, 0);
+    else {
+      let low = Infinity, high = -Infinity;
+      const { place } = this.page.surface;
+      for (let i = axis; i < place.length; i += 3) { low = Math.min(low, place[i]); high = Math.max(high, place[i]); }
+      this.cut.value.set(Number(axis === 0), Number(axis === 1), Number(axis === 2), low + share * (high - low));
+    }
+    this.render();
+    return this.cut.value.w;
+  }
+
+  isCutAway(x, y, z) {
+    const c = this.cut.value;
+    return c.x * x + c.y * y + c.z * z - c.w > 0;
+  }
+
   // quantity: null hides the path; range: [low, high] of the colours.
   setPath(run, quantity, range, diverging) {
     for (const old of [this.path, this.rapids]) if (old) { this.part.remove(old); old.geometry.dispose(); }
@@ -280,7 +307,7 @@ export class PartScene {
 
   // How far from the plane of the screen the stock is hit, or Infinity.
   stockDepth(x, y) {
-    if (!this.stock?.visible) return Infinity;
+    if (!this.stock?.visible || this.cut.value.lengthSq() > 0) return Infinity;
     const ray = new Raycaster();
     ray.setFromCamera(new Vector2(x, y), this.camera);
     this.part.updateMatrixWorld();
@@ -295,6 +322,7 @@ export class PartScene {
     const along = this.camera.getWorldDirection(new Vector3()).transformDirection(back), reach = Math.max(cell, 3 * this.mmPerPixel()) ** 2;
     let best = -1, least = Infinity;
     for (let i = 0; i < place.length; i += 3) {
+      if (this.isCutAway(place[i], place[i + 1], place[i + 2])) continue;
       const dx = place[i] - from.x, dy = place[i + 1] - from.y, dz = place[i + 2] - from.z;
       const depth = dx * along.x + dy * along.y + dz * along.z, off = dx * dx + dy * dy + dz * dz - depth * depth;
       if (off < reach && depth + 2 * Math.sqrt(off) < least) { least = depth + 2 * Math.sqrt(off); best = i / 3; }

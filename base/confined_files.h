@@ -1,0 +1,19 @@
+#pragma once
+// A process that reads and writes in one folder alone: camber --only-in, and the runs of camber ui.
+#include <string>
+
+namespace camber {
+
+/// From now on this process reads and writes user's files below `folder` alone. Reading and writing go through
+/// require_confined() (SourceText, OutputFile and the few that open files themselves); intermediate files are made
+/// there too. Throws InputError [file-missing] where there is no such folder.
+void confine_files(const std::string& folder);
+
+/// Throws InputError [file-outside] where confine_files() was called and `path`, all links resolved, lies outside.
+/// What is not there yet counts by the folder that it would be in.
+void require_confined(const std::string& path);
+
+/// Whether `path`, all links resolved, is `folder` or lies below it.
+bool lies_below(const std::string& folder, const std::string& path);
+
+}  // namespace camber

@@ -1,0 +1,370 @@
+// The workbench: jobs at the left, one of them at the right, in tabs.
+import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
+import { fileBytes, fileText, get, optionsOf, post, watchRuns } from './api.js';
+import { baseName, clear, clock, folderName, h, select } from './dom.js';
+import { LineList } from './line_list.js';
+import { readPath } from './path_data.js';
+import { PathScene, TOOL_COLOURS, VIEW_NAMES } from './path_scene.js';
+import { Comparison, Results } from './results.js';
+import { Runs, stateText } from './runs.js';
+import { Setup } from './setup.js';
+import { LANGUAGES, currentLanguage, setLanguage, text } from './texts.js';
+import { isInch, length, setInch, speed } from './units.js';
+import './workbench.css';
+
+// What the user has chosen stays in the browser; it changes no result.
+const chosen = {
+  get: (name, otherwise) => { try { return localStorage.getItem('camber.' + name) ?? otherwise; } catch { return otherwise; } },
+  set: (name, value) => { try { localStorage.setItem('camber.' + name, value); } catch { /* a private window */ } },
+};
+
+const TABS = ['path', 'setup', 'run', 'results', 'compare', 'text'];
+
+class Workbench {
+  async start() {
+    // The token is in the cookie by now: it does not stay in the address.
+    if (location.search) history.replaceState(null, '', location.pathname);
+    setLanguage(chosen.get('language', navigator.language?.startsWith('de') ? 'de' : 'en'));
+    setInch(chosen.get('unit', 'mm') === 'inch');
+    this.theme(chosen.get('theme', 'auto'));
+    this.skeleton();
+    document.documentElement.dataset.ready = 'yes';
+    try { this.about = await get('api/about'); } catch (e) { return this.said(e.message, true); }
+    this.parts();
+    this.listen();
+    watchRuns(runs => this.runsChanged(runs), () => {});
+    await this.readJobs();
+    if (this.jobs.length) await this.openJob(chosen.get('job') && this.jobs.some(j => j.job === chosen.get('job')) ? chosen.get('job') : this.jobs[0].job);
+    document.documentElement.dataset.ready = 'all';
+  }
+
+  theme(name) {
+    chosen.set('theme', name);
+    if (name === 'auto') delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = name;
+    this.scene?.setBackground(getComputedStyle(document.documentElement).getPropertyValue('--scene').trim());
+  }
+
+  skeleton() {
+    this.jobList = h('div', { id: 'jobs' });
+    this.status = h('p', { id: 'status', role: 'status' });
+    this.main = h('main', {});
+    this.choose = h('input', { type: 'file', hidden: true, id: 'choose', onchange: () => this.begin(this.choose.files[0]) });
+    const again = (name, value) => { chosen.set(name, value); location.reload(); };
+    clear(document.body,
+      h('aside', {}, h('h1', {}, 'Camber'), this.choose,
+        h('button', { type: 'button', className: 'main drop', onclick: () => this.choose.click() }, h('span', {}, text('drop')), h('small', {}, text('open'))),
+        h('h2', {}, text('jobs')), this.jobList, this.all = h('div', {}),
+        h('div', { className: 'settings' },
+          select(text('unit'), [['mm', 'mm'], ['inch', 'inch']], isInch() ? 'inch' : 'mm', v => again('unit', v)),
+          select(text('language'), Object.entries(LANGUAGES), currentLanguage(), v => again('language', v)),
+          select(text('theme'), ['auto', 'light', 'dark'].map(t => [t, text('theme_' + t)]), chosen.get('theme', 'auto'), v => this.theme(v)))),
+      this.main, this.status);
+    clear(this.main, h('p', { className: 'note empty' }, text('loading')));
+  }
+
+  parts() {
+    const said = (sentence, wrong) => this.said(sentence, wrong);
+    this.setup = new Setup(this.about, { said, changed: job => this.jobChanged(job) });
+    this.runs = new Runs(this.about, { said, showResults: (job, command) => this.showResults(job, command) });
+    this.results = new Results({ said });
+    this.comparison = new Comparison({ said });
+    this.lines = new LineList({ picked: n => this.scene?.markLine(n) });
+    this.sceneBox = h('div', { className: 'scene', id: 'scene' });
+    this.sceneBar = h('div', { className: 'bar', id: 'scene-bar' });
+    this.legend = h('div', { className: 'legend', id: 'legend' });
+    this.messageList = h('ul', { className: 'messages', id: 'messages' });
+    this.textArea = h('textarea', { id: 'text', spellcheck: false, 'aria-label': 'job.toml' });
+    this.pages = {
+      path: h('div', { className: 'path' }, h('div', { className: 'left' }, this.sceneBar, this.sceneBox, this.legend), h('div', { className: 'right' }, this.lines.box, this.messageList)),
+      setup: this.setup.box, run: this.runs.box, results: this.results.box, compare: this.comparison.box,
+      text: h('div', {}, this.textArea, h('p', {}, h('button', { type: 'button', className: 'main', onclick: () => this.saveText() }, text('save')))),
+    };
+    this.tabs = h('nav', { role: 'tablist' }, TABS.map(t => h('button', { type: 'button', role: 'tab', data: { tab: t }, onclick: () => this.tab(t) }, text('tab_' + t))));
+    this.head = h('div', { className: 'head' });
+    clear(this.all, select(text('run_all'), [['', '–'], ...this.about.commands.filter(c => !['compress', 'fit-feed'].includes(c)).map(c => [c, text('command_' + c)])], '', c => c && this.runAll(c)));
+    this.all.title = text('run_all_help');
+  }
+
+  frame() {
+    if (this.main.contains(this.tabs)) return;
+    clear(this.main, this.head, this.tabs, TABS.map(t => this.pages[t]), h('p', { className: 'note keys' }, text('keys')));
+    try {
+      this.scene = new PathScene(this.sceneBox, { picked: i => this.lines.select(this.scene.path.line[i], true) });
+      this.scene.describe = i => this.describe(i);
+      window.camberScene = this.scene;
+    } catch { clear(this.sceneBox, h('p', { className: 'note' }, text('no_webgl'))); }
+    this.theme(chosen.get('theme', 'auto'));
+    this.by = 'kind';
+    clear(this.sceneBar,
+      select(text('colour_by'), ['kind', 'tool', 'feed', 'message'].map(b => [b, text('by_' + b)]), 'kind', b => { this.by = b; this.colour(); }),
+      this.toolChoice = h('span', {}),
+      h('label', {}, this.rapids = h('input', { type: 'checkbox', checked: true, onchange: () => this.showKinds() }), ' ', text('rapids')),
+      h('span', { className: 'choice' }, VIEW_NAMES.map(v => h('button', { type: 'button', data: { view: v }, onclick: () => this.scene?.look(v) }, text('view_' + v)))),
+      h('button', { type: 'button', onclick: () => this.savePicture() }, text('save_picture')));
+    this.tab('path');
+  }
+
+  tab(name) {
+    if (!this.pages) return;
+    this.current = name;
+    for (const t of TABS) this.pages[t].hidden = t !== name;
+    this.tabs.querySelectorAll('button').forEach(b => b.setAttribute('aria-selected', String(b.dataset.tab === name)));
+    if (name === 'compare' && this.job) this.comparison.show(this.job);
+    if (name === 'path') { this.scene?.resize(); this.lines.draw(); }
+  }
+
+  said(sentence, wrong) {
+    this.status.textContent = sentence;
+    this.status.classList.toggle('wrong', Boolean(wrong));
+    clearTimeout(this.quiet);
+    if (!wrong) this.quiet = setTimeout(() => { this.status.textContent = ''; }, 2500);
+  }
+
+  async readJobs() {
+    this.jobs = await get('api/jobs');
+    this.drawJobs();
+    if (this.jobs.length === 0 && !this.job && !this.program) clear(this.main, h('p', { className: 'note empty' }, text('no_jobs')));
+  }
+
+  stateOf(job) {
+    const going = (this.runs?.runs ?? []).filter(r => r.job === job.job && ['queued', 'running'].includes(r.state)).at(-1);
+    const last = job.results.map(r => r.run).sort((a, b) => a.ended - b.ended).at(-1);
+    return { state: going?.state ?? last?.state ?? 'none', last };
+  }
+
+  // The figures that a shop looks for first.
+  figuresOf(job) {
+    const of = name => job.results.find(r => r.command === name)?.figures;
+    const compensated = of('compensate'), predicted = of('predict'), rms = f => f?.rms?.toFixed(1);
+    const before = rms(compensated?.before_um) ?? rms(predicted?.form_error_um), after = rms(compensated?.after_um);
+    const time = compensated?.machine_time_s?.after ?? predicted?.machine_time_s ?? of('time')?.total_s ?? of('feed')?.time_s;
+    return [before && `${before}${after ? ` → ${after}` : ''} µm`, typeof time === 'number' && clock(time)].filter(Boolean).join(' · ');
+  }
+
+  drawJobs() {
+    clear(this.jobList, this.jobs.map(job => {
+      const { state, last } = this.stateOf(job), name = baseName(job.job) === 'job.toml' && folderName(job.job) ? folderName(job.job).slice(0, -1) : job.job;
+      return h('button', { type: 'button', className: 'job', data: { job: job.job, state }, 'aria-current': String(job.job === this.job?.job), onclick: () => this.openJob(job.job) },
+        h('b', {}, name), h('span', { className: `state ${state}` }, stateText(state)), h('span', { className: 'note figures', title: `${text('error_rms')}, ${text('machine_time')}` }, this.figuresOf(job)),
+        last?.ended ? h('span', { className: 'note' }, new Date(1000 * last.ended).toLocaleString(currentLanguage())) : null);
+    }));
+  }
+
+  async begin(file) {
+    if (!file || !this.about) return;
+    if (file.size > this.about.max_upload_bytes) return this.said(text('too_large', (file.size / 1e6).toFixed(0), (this.about.max_upload_bytes / 1e6).toFixed(0)), true);
+    this.said(text('checking'));
+    try {
+      const made = await post('api/programs', { name: file.name }, file);
+      await this.readJobs();
+      if (made.job) return await this.openJob(made.job);
+      await this.openProgram(made.program);
+      this.said(made.messages.map(m => m.message).join('; '), true);
+    } catch (e) { this.said(e.message, true); }
+  }
+
+  // A program that no job could be made of: its lines and its messages.
+  async openProgram(program) {
+    this.job = null;
+    this.program = program;
+    this.frame();
+    this.head.textContent = program;
+    await this.showProgram(program, {});
+  }
+
+  async openJob(name) {
+    try {
+      const job = await get('api/job', { job: name });
+      this.frame();
+      chosen.set('job', name);
+      this.program = job.programs[0];
+      this.job = job;
+      clear(this.head, h('b', {}, job.job), ' ', h('span', { className: 'note' }, job.programs.join(', ')));
+      this.setup.figures = null;
+      this.showJob(job);
+      this.tab(this.current || 'path');
+      this.drawJobs();
+      const units = job.fields.find(f => f.table === '' && f.key === 'units' && !f.is_default)?.value.slice(1, -1);
+      // The path is there long before the job is checked.
+      await Promise.all([this.program && this.showProgram(this.program, optionsOf({ units: units ?? '' })), this.check({ job: name })]);
+    } catch (e) { this.said(e.message, true); }
+  }
+
+  showJob(job) {
+    this.job = job;
+    this.setup.show(job);
+    this.runs.show(job);
+    this.results.show(job);
+    if (document.activeElement !== this.textArea) this.textArea.value = job.text;
+    this.showStockAndPart();
+  }
+
+  // A setting was changed: the commands' own check says what they think of it.
+  async jobChanged(job) {
+    this.showJob(job);
+    await this.check({ job: job.job });
+  }
+
+  async showProgram(program, options) {
+    const [lines, checked] = await Promise.all([fileText(program), get('api/check', { program, ...options })]);
+    if (program !== this.program) return;
+    this.lines.setText(lines);
+    if (this.marks) this.lines.setMarks(this.marks);
+    if (!this.job) this.showMessages(checked);
+    if (checked.path && this.scene) await this.showPath(checked.path);
+    document.documentElement.dataset.shown = program;
+  }
+
+  async saveText() {
+    try {
+      const answer = await post('api/text', { job: this.job.job }, this.textArea.value);
+      if (!answer.saved) return this.said(text('not_saved', answer.messages.map(m => `${m.line}: ${m.message}`).join('; ')), true);
+      this.textArea.blur();
+      this.said(text('saved'));
+      await this.jobChanged(answer);
+    } catch (e) { this.said(e.message, true); }
+  }
+
+  async check(what) {
+    const asked = this.asked = Symbol('check');
+    this.said(text('checking'));
+    let checked;
+    try { checked = await get('api/check', what); } catch (e) { return this.said(e.message, true); }
+    if (asked !== this.asked || checked.stopped) return;
+    this.showMessages(checked);
+    this.setup.setSheet(checked.sheet);
+  }
+
+  // At their lines and in the list.
+  showMessages(checked) {
+    this.messages = checked.messages;
+    const assumed = checked.figures?.assumed ?? [];
+    this.said(checked.status === 0 ? text('checked') : `${text('check_failed')}: ${checked.messages.find(m => m.severity === 'error')?.message ?? ''}`, checked.status !== 0);
+    this.marks = new Map();
+    for (const m of checked.messages) {
+      if (!m.line || m.file !== this.program) continue;
+      const mark = this.marks.get(m.line) ?? { severity: m.severity, texts: [] };
+      if (m.severity === 'error') mark.severity = 'error';
+      mark.texts.push(m.message);
+      this.marks.set(m.line, mark);
+    }
+    this.lines.setMarks(this.marks);
+    clear(this.messageList, checked.messages.length + assumed.length === 0 ? h('li', {}, text('no_messages')) : null,
+      checked.messages.map(m => h('li', { className: m.severity, onclick: () => m.file === this.program && this.goTo(m.line) }, m.line ? h('b', {}, `${baseName(m.file)}:${m.line} `) : null, m.message)),
+      assumed.map(a => h('li', { className: 'note link', onclick: () => this.tab('setup') }, `${text('guess')}: ${a}`)));
+    if (this.by === 'message') this.colour();
+    document.documentElement.dataset.checked = String(Number(document.documentElement.dataset.checked ?? 0) + 1);
+  }
+
+  async showPath(name) {
+    const path = readPath(await fileBytes(name));
+    this.scene.setPath(path);
+    const tools = [...new Set(path.tool)].sort((a, b) => a - b);
+    this.toolNumber = '';
+    clear(this.toolChoice, tools.length > 1 ? select(text('tool'), [['', text('tool_all')], ...tools.map(t => [t, 'T' + t])], '', t => { this.toolNumber = t; this.showKinds(); }) : null);
+    this.colour();
+    this.showStockAndPart();
+  }
+
+  savePicture() {
+    this.sceneBox.querySelector('canvas')?.toBlob(blob => {
+      const address = URL.createObjectURL(blob);
+      h('a', { href: address, download: `${baseName(this.program)}.png` }).click();
+      URL.revokeObjectURL(address);
+    });
+  }
+
+  showKinds() { this.scene?.show({ rapids: this.rapids.checked, tool: this.toolNumber }); }
+
+  colour() {
+    if (!this.scene?.path) return;
+    const { path } = this.scene, most = this.scene.colour(this.by, new Map([...this.marks ?? []].map(([n, m]) => [n, m.severity])));
+    const key = (name, colour) => h('span', { className: 'key' }, h('i', { style: `background: ${colour}` }), name);
+    const rgb = c => `rgb(${c.join(',')})`;
+    const legends = {
+      kind: () => [key(text('by_kind').split(' ')[0], 'rgb(217,98,43)'), key(text('by_kind').split(' ').at(-1), 'rgb(40,118,190)')],
+      tool: () => [...new Set(path.tool)].sort((a, b) => a - b).map(t => key('T' + t, rgb(TOOL_COLOURS[t % TOOL_COLOURS.length]))),
+      feed: () => [h('span', {}, speed(0)), h('i', { className: 'ramp' }), h('span', {}, speed(most))],
+      message: () => [key(text('messages'), 'rgb(200,45,40)')],
+    };
+    clear(this.legend, legends[this.by](), h('span', { className: 'note' }, `${path.count.toLocaleString(currentLanguage())} ${text('points')}. `, path.thinned ? text('thinned', length(path.chord_mm)) : ''));
+  }
+
+  describe(i) {
+    const { path, place } = this.scene, at = [0, 1, 2].map(k => 'XYZ'[k] + length(place[3 * i + k]).replace(/ .*/, '')).join(' ');
+    const feed = path.feed_mm_per_min[i];
+    return `${text('line')} ${path.line[i]} · ${at} · T${path.tool[i]}${Number.isFinite(feed) ? ' · ' + speed(feed) : ''}`;
+  }
+
+  async showStockAndPart() {
+    if (!this.scene || !this.job) return;
+    const field = (table, key) => this.job.fields.find(f => f.table === table && f.key === key && !f.is_default)?.value;
+    let corners = null;
+    try { corners = JSON.parse(field('stock', 'box_mm') ?? 'null'); } catch { /* the check says so */ }
+    this.scene.setBox(Array.isArray(corners) && corners.length === 2 ? corners : null);
+    const part = field('part', 'mesh')?.slice(1, -1), stl = part && /\.stl$/i.test(part) ? folderName(this.job.job) + part : '';
+    if (stl === this.partShown) return;
+    this.partShown = stl;
+    try { this.scene.setPart(stl ? new STLLoader().parse(await fileBytes(stl)) : null); } catch (e) { this.said(e.message, true); }
+  }
+
+  goTo(line) {
+    this.lines.select(line, true);
+    this.scene?.markLine(line);
+  }
+
+  async runsChanged(runs) {
+    const over = r => !['queued', 'running'].includes(r.state), before = new Map(this.runs.runs.map(r => [r.id, r]));
+    const ended = runs.filter(r => over(r) && before.has(r.id) && !over(before.get(r.id)));
+    this.runs.showRuns(runs);
+    document.documentElement.dataset.runs = runs.map(r => r.state).join(' ');
+    if (!ended.length && this.jobs) return this.drawJobs();
+    await this.readJobs();
+    if (this.job && ended.some(r => r.job === this.job.job)) {
+      this.job = await get('api/job', { job: this.job.job });
+      this.runs.job = this.job;
+      this.results.show(this.job, ended.at(-1).command);
+      if (this.current === 'compare') this.comparison.show(this.job);
+    }
+  }
+
+  async showResults(job, command) {
+    if (this.job?.job !== job) await this.openJob(job);
+    this.results.show(this.job, command);
+    this.tab('results');
+  }
+
+  async runAll(command) {
+    this.all.querySelector('select').value = '';
+    for (const job of this.jobs)
+      try { await post('api/run', { job: job.job, command, ...optionsOf({}) }); } catch (e) { this.said(`${job.job}: ${e.message}`, true); }
+  }
+
+  listen() {
+    const over = on => document.body.classList.toggle('dragged', on);
+    addEventListener('dragover', e => { e.preventDefault(); over(true); });
+    addEventListener('dragleave', e => { if (!e.relatedTarget) over(false); });
+    addEventListener('drop', e => { e.preventDefault(); over(false); this.begin(e.dataTransfer.files[0]); });
+    addEventListener('keydown', e => this.key(e));
+  }
+
+  key(e) {
+    if (/^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName) || e.ctrlKey || e.metaKey || e.altKey || !this.job) return;
+    if (TABS[Number(e.key) - 1]) return this.tab(TABS[Number(e.key) - 1]);
+    if (e.key === 'f') this.scene?.look(this.scene.view);
+    if (e.key === 't') this.scene?.look('top');
+    if (e.key === '/') {
+      e.preventDefault();
+      const line = Number(prompt(text('go_to_line')));
+      if (line >= 1 && line <= this.lines.count) { this.tab('path'); this.goTo(line); }
+    }
+    if (e.key === 'n' || e.key === 'p') {
+      const lines = [...this.marks?.keys() ?? []].sort((a, b) => a - b), now = this.lines.selected;
+      const next = e.key === 'n' ? lines.find(l => l > now) ?? lines[0] : lines.filter(l => l < now).at(-1) ?? lines.at(-1);
+      if (next) this.goTo(next);
+    }
+  }
+}
+
+new Workbench().start();
