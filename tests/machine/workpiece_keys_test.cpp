@@ -86,11 +86,12 @@ TEST(WorkpieceKeys, WrittenAsTheyAreRead) {
 }
 
 TEST(WorkpieceKeys, RefusesWhatIsNoPlace) {
-  EXPECT_EQ(read_workpiece_lines("youngs_modulus_GPa = 70.0\nfixed = [[0, 0, -20]]\n").messages,
-            "job.toml:15:9: error: fixed is not a list of boxes; \"bottom\", a list of boxes such as [[[x, y, z], [x, y, "
-            "z]]], or the path of an STL file in quotes was expected [value-type]\n"
-            "    fixed = [[0, 0, -20]]\n"
-            "            ^");
+  EXPECT_EQ(
+      read_workpiece_lines("youngs_modulus_GPa = 70.0\nfixed = [[0, 0, -20]]\n").messages,
+      "job.toml:15:9: error: fixed is not a list of boxes; \"bottom\", a list of boxes such as [[[x, y, z], [x, y, "
+      "z]]], or the path of an STL file in quotes was expected [value-type]\n"
+      "    fixed = [[0, 0, -20]]\n"
+      "            ^");
   EXPECT_EQ(read_workpiece_lines("youngs_modulus_GPa = 70.0\nfixed = \"top\"\n").messages,
             "job.toml:15:9: error: fixed: no such file: top (paths are relative to the job's folder) [file-missing]\n"
             "    fixed = \"top\"\n"
