@@ -87,16 +87,17 @@ class Toucher {
 
 /// Touching points gathered at heights of their own.
 struct Patches {
-  std::vector<double> height_mm;
+  double low_mm = 0, high_mm = 0;  ///< of the points
+  std::vector<double> height_mm;   ///< of the middle of each
   std::vector<workpiece::NodeWeights> where;
 };
 
 /// One height where the points are nearly level, up to three where they are far apart.
 Patches gather(const workpiece::Solid& solid, std::span<const Touch> touches) {
-  constexpr double kLevel_mm = 0.5, kApart_mm = 8;
+  constexpr double kLevel_mm = 0.5, kNear_mm = 2.5;
   const auto [low, high] = std::ranges::minmax(touches, {}, &Touch::height_mm);
   const double from = low.height_mm, range = high.height_mm - from;
-  const std::size_t count = range < kLevel_mm ? 1 : range < kApart_mm ? 2 : 3;
+  const std::size_t count = range < kLevel_mm ? 1 : range < kNear_mm ? 2 : 3;
   Patches all;
   std::vector<double> weight(count);
   all.height_mm.resize(count), all.where.resize(count);
@@ -110,7 +111,7 @@ Patches gather(const workpiece::Solid& solid, std::span<const Touch> touches) {
       all.where[i].add(solid.at(t.in_part_mm), share);
     }
   }
-  Patches out;
+  Patches out{from, high.height_mm, {}, {}};
   for (std::size_t i = 0; i < count; ++i) {
     double nodes = 0;
     for (const auto& w : all.where[i].nodes) nodes += w.weight;
@@ -122,16 +123,16 @@ Patches gather(const workpiece::Solid& solid, std::span<const Touch> touches) {
   return out;
 }
 
-/// Displacements at a run's heights by those at the patches' own: linear between these, and beyond them by half of what
-/// they are apart. [2 heights + 1][2 patches + 1]
-Eigen::MatrixXd spread_over(const std::vector<double>& heights, const std::vector<double>& own) {
+/// Displacements at a run's heights by those at the patches' own: linear between these, and beyond them up to where the
+/// points end. [2 heights + 1][2 patches + 1]
+Eigen::MatrixXd spread_over(const std::vector<double>& heights, const Patches& patches) {
+  const std::vector<double>& own = patches.height_mm;
   const std::size_t n = heights.size(), p = own.size();
   Eigen::MatrixXd out =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(2 * n + 1), static_cast<Eigen::Index>(2 * p + 1));
   out(out.rows() - 1, out.cols() - 1) = 1;
-  const double beyond = (own.back() - own.front()) / 2;
   for (std::size_t i = 0; i < n; ++i) {
-    const double z = std::clamp(heights[i], own.front() - beyond, own.back() + beyond);
+    const double z = std::clamp(heights[i], patches.low_mm, patches.high_mm);
     std::size_t lower = 0;
     while (lower + 2 < p && z > own[lower + 1]) ++lower;
     const double way = p < 2 ? 0 : (z - own[lower]) / (own[lower + 1] - own[lower]);
@@ -185,9 +186,9 @@ class RunSurvey {
         toucher_(tool, top_mm_),
         all_(all),
         out_(out) {
-    constexpr double kApart_mm = 6;
+    constexpr double kApart_mm = 4;
     const std::size_t count =
-        std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(top_mm_ / kApart_mm)) + 1, 2, 5);
+        std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(top_mm_ / kApart_mm)) + 1, 2, 6);
     for (std::size_t i = 0; i < count; ++i)
       out_.height_mm.push_back(top_mm_ * static_cast<double>(i) / static_cast<double>(count - 1));
   }
@@ -296,7 +297,7 @@ class RunSurvey {
         const workpiece::Load& read = loads[static_cast<std::size_t>(i)];
         own(i, j) = read.direction.dot(displacement_mm(read.where, moved[static_cast<std::size_t>(j)]));
       }
-    const Eigen::MatrixXd spread = spread_over(out_.height_mm, patches.height_mm);
+    const Eigen::MatrixXd spread = spread_over(out_.height_mm, patches);
     const Eigen::MatrixXd here = spread * ((own + own.transpose()) / 2) * spread.transpose();
     out_.places.push_back({stretch_, in_stretch_.share_of(k), here});
     all_.cells = std::max(all_.cells, solid.cells().size());
