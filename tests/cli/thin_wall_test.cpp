@@ -54,7 +54,8 @@ TEST(ThinWallJob, ErrorIsTheToolsAndTheParts) {
   ASSERT_TRUE(rows.contains("part_deflection_um"));
   double largest = 0;
   for (std::size_t i = 0; i < rows.at("error_um").size(); ++i) {
-    EXPECT_NEAR(rows.at("tool_deflection_um")[i] + rows.at("part_deflection_um")[i], rows.at("deflection_um")[i], 0.002);
+    EXPECT_NEAR(rows.at("tool_deflection_um")[i] + rows.at("part_deflection_um")[i], rows.at("deflection_um")[i],
+                0.002);
     largest = std::max(largest, std::abs(rows.at("part_deflection_um")[i]));
   }
   const auto figures = nlohmann::json::parse(tests::file_text(folder / "figures.json"));
