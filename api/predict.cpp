@@ -60,7 +60,7 @@ std::vector<ErrorPoint> points_of(const report::FormErrorPoints& points) {
     const report::FormErrorPoint p = points.at(i);
     out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(), p.error_um,
                    p.deflection_um(), p.contour_um, p.total_error_um, p.model_error_um, p.area_mm2, p.block, p.tool,
-                   p.valid});
+                   p.valid, p.tool_um(), p.part_yields() ? p.part_um : 0});
   }
   return out;
 }
@@ -100,6 +100,8 @@ PredictResult api::result_of(const machine::Job& job, const PreparedJob& prepare
                     .unseen_mm2 = p.unseen_mm2,
                     .form_error = points_of(report::form_error_points(program, p, prepared.traced_run())),
                     .doubts = api::doubts_of(job, program, p)};
+  out.tool_deflection_um = p.deflection_parts_um ? api::figures_of(p.deflection_parts_um->tool_um) : out.deflection_um;
+  if (p.deflection_parts_um) out.part_deflection_um = api::figures_of(p.deflection_parts_um->part_um);
   if (prepared.traced) out.trace = comparison_of(*prepared.traced);
   out.force_max_N = report::largest_force_N(p);
   report::for_each_force_row(job, program, p, [&](const report::ForceRow& row) { out.forces.push_back(row_of(row)); });

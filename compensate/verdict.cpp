@@ -91,7 +91,7 @@ constexpr std::array kCauses{Cause::correctable, Cause::guard, Cause::limited, C
 
 PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, const std::vector<double>& total_mm,
                            const Observed& observed, const machine::CompensationSettings& asked) {
-  std::vector<double> error, deflection, contour, total, judged, area;
+  std::vector<double> error, deflection, contour, total, judged, area, tool, part;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     if (!observed.judged(i)) continue;
     const removal::SurfacePoint& p = surface[i];
@@ -99,12 +99,21 @@ PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, co
     error.push_back(1000 * p.error_mm);
     deflection.push_back(1000 * (p.error_mm - p.contour_mm));
     contour.push_back(1000 * p.contour_mm);
+    part.push_back(1000 * static_cast<double>(p.part_mm));
+    tool.push_back(deflection.back() - part.back());
     if (!total_mm.empty()) total.push_back(1000 * total_mm[i]);
     judged.push_back(1000 * judged_mm(p, asked.reference));
     area.push_back(p.area_mm2);
   }
-  PlainFigures out{removal::error_figures(error, area), removal::error_figures(deflection, area),
-                   removal::error_figures(contour, area), std::nullopt, fraction_in_band(judged, area, asked)};
+  PlainFigures out;
+  out.error_um = removal::error_figures(error, area);
+  out.deflection_um = removal::error_figures(deflection, area);
+  out.contour_um = removal::error_figures(contour, area);
+  out.in_band_fraction = fraction_in_band(judged, area, asked);
+  if (std::ranges::any_of(part, [](double v) { return v != 0; })) {
+    out.tool_um = removal::error_figures(tool, area);
+    out.part_um = removal::error_figures(part, area);
+  }
   if (!total_mm.empty()) out.total_um = removal::error_figures(total, area);
   return out;
 }

@@ -17,7 +17,9 @@ namespace camber::compensate {
 struct PlainFigures {
   removal::ErrorFigures error_um, deflection_um, contour_um;
   std::optional<removal::ErrorFigures> total_um;  ///< against the part's mesh
-  double in_band_fraction = 0;                    ///< of the area whose judged error is within tolerance or profile
+  /// Of deflection_um, where the part yields.
+  std::optional<removal::ErrorFigures> tool_um{}, part_um{};
+  double in_band_fraction = 0;  ///< of the area whose judged error is within tolerance or profile
 };
 
 /// `observed`: of the same surface, with its reach. `total_mm`: one per point, or empty.

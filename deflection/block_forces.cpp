@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "base/vector_clones.h"
 #include "deflection/chip_ends.h"
@@ -31,7 +32,9 @@ struct Sums {
   const double* compliance;  ///< [nodes] of the ring, mm/N
   double axis_x, axis_y;     ///< compliance of the machine's axes, mm/N
   int nodes, row;            ///< of deflection: steps, filled up
-  double *fx, *fy, *fz, *torque, *deflection;
+  const double* gathering;   ///< [heights] of the ring: shares of the force that the part takes at its heights
+  int heights;               ///< 0: the part does not yield
+  double *fx, *fy, *fz, *torque, *deflection, *gathered;
 };
 
 CAMBER_VECTOR_CLONES
@@ -52,6 +55,12 @@ void add_four(const EdgeForces& e, const Sums& s) {
     for (std::size_t l = 0; l < kSteps; ++l) dx[l] += wx * x[l];
     for (std::size_t l = 0; l < kSteps; ++l) dy[l] += wy * y[l];
   }
+  for (int i = 0; i < s.heights; ++i) {
+    const double share = s.gathering[i];
+    double *gx = s.gathered + 2 * i * s.row, *gy = gx + s.row;
+    for (std::size_t l = 0; l < kSteps; ++l) gx[l] += share * x[l];
+    for (std::size_t l = 0; l < kSteps; ++l) gy[l] += share * y[l];
+  }
 }
 
 /// Of an affine law without a ramp.
@@ -69,7 +78,8 @@ inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, co
 }  // namespace
 
 /// What an end adds to the sums that hold every sample whole, drawn in a straight line to the next step.
-void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm) const {
+void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm,
+                             std::span<double> fine_N) const {
   const auto& ring = envelope_.rings[static_cast<std::size_t>(e.ring)];
   const int pitch = envelope_.steps_per_pitch, turn = pitch * kFine;
   const double width = e.width_fraction * ring.width_mm;
@@ -127,6 +137,13 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
         d[at > 0 ? -1 : 2 * turn - 1] += z;  // of the step before: the next one's
       }
     }
+    if (!fine_N.empty()) {
+      const HeightWeight w = part_weight_[static_cast<std::size_t>(e.ring)];
+      double* g = fine_N.data() + 2 * w.lower * static_cast<std::size_t>(turn) + static_cast<std::size_t>(at);
+      g[0] += w.of_lower() * f[0], g[turn] += w.of_lower() * f[1];
+      g[2 * turn] += w.upper_fraction * f[0], g[3 * turn] += w.upper_fraction * f[1];
+      fine_N[2 * part_->heights() * static_cast<std::size_t>(turn) + static_cast<std::size_t>(at)] += f[2];
+    }
     if (j % kFine == 0)
       for (std::size_t i = 0; i < 4; ++i) sums[i * row + static_cast<std::size_t>(at / kFine)] += f[i];
   }
@@ -151,6 +168,14 @@ void draw_between_steps(const double* x, const double* y, std::size_t count, flo
   }
 }
 
+/// One row of values, with straight lines between the steps.
+void draw_row(const double* x, std::size_t count, double* fine) {
+  for (std::size_t m = 0; m < count; ++m) {
+    const double next = x[m + 1 < count ? m + 1 : 0];
+    for (int i = 0; i < kFine; ++i) *fine++ = x[m] + i * (next - x[m]) / kFine;
+  }
+}
+
 /// The same of axial deflections, compliance times force: of each fine step its own and the next one's.
 void draw_axial(const double* force, double compliance, std::size_t count, float* fine) {
   const auto at = [&](std::size_t i) {
@@ -168,15 +193,17 @@ void draw_axial(const double* force, double compliance, std::size_t count, float
 
 namespace {
 
-/// Sums of one tooth passing: forces along x, y, z, torque, then deflections along x and y by nodes; a row of each by
-/// rotation step, with room for a block on both sides of the pitch.
+/// Sums of one tooth passing: forces along x, y, z, torque, then deflections along x and y by nodes, then forces along
+/// x and y by the part's heights; a row of each by rotation step, with room for a block on both sides of the pitch.
 class PassSums {
  public:
   static constexpr int kAside = kSteps;
-  PassSums(std::size_t steps, std::size_t nodes)
-      : nodes_(static_cast<int>(nodes)), row_((steps + kSteps - 1) / kSteps * kSteps + 2 * kAside) {
+  PassSums(std::size_t steps, std::size_t nodes, std::size_t heights)
+      : nodes_(static_cast<int>(nodes)),
+        heights_(static_cast<int>(heights)),
+        row_((steps + kSteps - 1) / kSteps * kSteps + 2 * kAside) {
     thread_local std::vector<double> room;
-    room.assign((4 + 2 * nodes) * row_, 0.0);
+    room.assign((4 + 2 * (nodes + heights)) * row_, 0.0);
     values_ = room.data();
   }
   std::size_t row() const { return row_; }
@@ -187,16 +214,39 @@ class PassSums {
     s.nodes = nodes_, s.row = static_cast<int>(row_);
     s.fx = of(0) + step, s.fy = of(1) + step, s.fz = of(2) + step, s.torque = of(3) + step;
     s.deflection = of(4) + step;
+    s.heights = heights_;
+    s.gathered = of(4 + 2 * static_cast<std::size_t>(nodes_)) + step;
     return s;
   }
 
  private:
-  int nodes_;
+  int nodes_, heights_;
   std::size_t row_;
   double* values_;
 };
 
 }  // namespace
+
+void ToothPassModel::add_part(std::size_t passing, std::span<const double> fine_N, std::span<float> fine) const {
+  const std::size_t size = part_->size(), count = fine_N.size() / size, nodes = node_height_mm_.size();
+  const Eigen::MatrixXd compliance = part_->at(passing);
+  const std::span<float> whole = fine.first(fine.size() / 2), part = fine.last(fine.size() / 2);
+  std::fill(part.begin(), part.end(), 0.0f);
+  const removal::AxialRow axial_whole(whole.last(2 * count)), axial_part(part.last(2 * count));
+  Eigen::VectorXd force(static_cast<Eigen::Index>(size));
+  for (std::size_t j = 0; j < count; ++j) {
+    for (std::size_t i = 0; i < size; ++i) force[static_cast<Eigen::Index>(i)] = fine_N[i * count + j];
+    if (force.isZero(0)) continue;
+    const Eigen::VectorXd moved = compliance * force;
+    for (std::size_t n = 0; n < nodes; ++n) {
+      const Vec2 at = lateral_at(*part_, node_height_mm_[n], moved);
+      for (std::size_t a = 0; a < 2; ++a)
+        part[2 * (n * count + j) + a] = static_cast<float>(at[static_cast<Eigen::Index>(a)]);
+    }
+    axial_part.set(j, moved[static_cast<Eigen::Index>(size) - 1]);
+  }
+  std::transform(whole.begin(), whole.end(), part.begin(), whole.begin(), std::plus<>());
+}
 
 removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& blocks, const removal::ChipBlock& even,
                                                const removal::ToothMotion& of_tool) const {
@@ -227,7 +277,10 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
   const auto steps = static_cast<std::size_t>(pitch);
   const std::size_t all_nodes = node_height_mm_.size(), nodes = fine.empty() ? 0 : all_nodes;
   const int last = static_cast<int>(envelope_.rings.size()) - 1;
-  const PassSums sums(steps, nodes);
+  const std::size_t heights = part_ && !fine.empty() ? part_->heights() : 0;
+  const PassSums sums(steps, nodes, heights);
+  thread_local std::vector<double> gathering;
+  gathering.resize(heights);
   out.chip_max_mm = out.chip_area_mm2 = 0;
   const bool affine = machine::is_affine(material_.law) && edge_ramp_mm_ == 0;
   const EdgeForce k = affine ? edge_force_slope(material_, 1) : EdgeForce{};
@@ -262,6 +315,12 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
       s.sine = ring.sine, s.cosine = ring.cosine;
       s.radius_mm = ring.profile.radius_mm;
       s.compliance = compliance_.data() + static_cast<std::size_t>(r) * all_nodes;
+      if (heights > 0) {
+        const HeightWeight w = part_weight_[static_cast<std::size_t>(r)];
+        std::fill(gathering.begin(), gathering.end(), 0.0);
+        gathering[w.lower] = w.of_lower(), gathering[w.lower + 1] = w.upper_fraction;
+        s.gathering = gathering.data();
+      }
       add_four(e, s);
     }
   };
@@ -306,7 +365,13 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
   }
   if (axial() && !fine.empty())
     draw_axial(sums.of(2), axial_compliance_mm_per_N_, steps, fine.data() + 2 * nodes * steps * kFine);
-  for (const ChipEnd& e : ends) add_end(e, sums.of(0), sums.row(), fine);
+  thread_local std::vector<double> fine_N;
+  fine_N.resize(heights > 0 ? (2 * heights + 1) * steps * kFine : 0);
+  for (std::size_t i = 0; i < 2 * heights; ++i)
+    draw_row(sums.of(4 + 2 * nodes + i), steps, fine_N.data() + i * steps * kFine);
+  if (heights > 0) draw_row(sums.of(2), steps, fine_N.data() + 2 * heights * steps * kFine);
+  for (const ChipEnd& e : ends) add_end(e, sums.of(0), sums.row(), fine, fine_N);
+  if (heights > 0) add_part(passing, fine_N, fine);
   out.force_N.resize(steps);
   out.torque_Nmm.assign(sums.of(3), sums.of(3) + steps);
   out.work_Nmm = 0;

@@ -64,7 +64,8 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
       model_(model),
       steps_(static_cast<std::size_t>(model.steps())),
       nodes_(model.node_height_mm().size()),
-      axial_(model.axial()) {
+      axial_(model.axial()),
+      part_(model.part()) {
   const auto& heights = model.node_height_mm();
   for (const auto& ring : envelope.rings) {
     auto w = removal::node_weight(heights, ring.profile.height_mm);
@@ -82,6 +83,11 @@ StaticEquilibrium::StaticEquilibrium(const removal::EnvelopeGrid& envelope, cons
   if (axial_) {
     for (auto* v : {&axial_by_own_, &axial_by_side_}) v->assign(steps_ * 5, 0.0);
     for (auto* v : {&by_own_axial_, &by_side_axial_}) v->assign(steps_ * nodes_ * 2, 0.0);
+  }
+  if (part_) {
+    for (const auto& ring : envelope.rings) part_ring_.push_back(height_weight(*part_, ring.profile.height_mm));
+    for (auto* v : {&part_N_, &part_mm_}) v->assign(steps_ * part_->size(), 0.0);
+    for (auto* v : {&part_by_own_, &part_by_side_}) v->assign(5 * steps_ * part_->size(), 0.0);
   }
   norm_.assign(steps_, 0.0);
   damping_.assign(steps_, 0.0);
@@ -185,6 +191,11 @@ void StaticEquilibrium::balance(std::size_t m) {
     for (auto* v : {&axial_by_own_, &axial_by_side_}) std::fill_n(v->data() + 5 * m, 5, 0.0);
     for (auto* v : {&by_own_axial_, &by_side_axial_}) std::fill_n(v->data() + from, 2 * nodes_, 0.0);
   }
+  if (part_) {
+    const std::size_t size = part_->size();
+    std::fill_n(part_N_.data() + m * size, size, 0.0);
+    for (auto* v : {&part_by_own_, &part_by_side_}) std::fill_n(v->data() + 5 * m * size, 5 * size, 0.0);
+  }
   const machine::Material& material = model_.material();
   const double ramp = model_.edge_ramp_mm();
   const double nodes_apart = model_.node_height_mm()[1] / model_.node_height_mm().back();
@@ -224,6 +235,7 @@ void StaticEquilibrium::balance(std::size_t m) {
       by_axial = {!by_cap ? e.deeper_z : first_stamp_ ? 0.0 : e.normal_z, leans ? -e.by_step * e.normal_z : 0.0};
       const auto along = [&](const EdgeForce& of) { return -(of.radial_N * e.normal_z + of.axial_N * e.meridian_z); };
       balance_axial(m, along(f), e.width_mm * along(k), by_own, by_side, by_axial);
+      if (part_) gather_part(e, m, force, along(f), slope, e.width_mm * along(k), by_own, by_side, by_axial);
     }
     for (std::size_t n = 0; n < nodes_; ++n) {
       const Vec2 c = model_.compliance_mm_per_N(e.ring, n);
@@ -255,6 +267,77 @@ void StaticEquilibrium::balance_axial(std::size_t m, double force_z, double slop
   }
   axial_by_own_[5 * m + 4] += change * by_axial.own;
   axial_by_side_[5 * m + 4] += change * by_axial.side;
+}
+
+/// Adds the force of an element to what the part's heights take.
+void StaticEquilibrium::gather_part(const Element& e, std::size_t m, const Vec2& force, double force_z,
+                                    const Vec2& slope, double slope_z, const std::array<double, 4>& by_own,
+                                    const std::array<double, 4>& by_side, const AxialChange& by_axial) {
+  const std::size_t size = part_->size();
+  const auto add = [&](std::size_t i, double f, double change) {
+    const std::size_t at = m * size + i;
+    part_N_[at] += f;
+    double *own = part_by_own_.data() + 5 * at, *side = part_by_side_.data() + 5 * at;
+    for (std::size_t b = 0; b < 4; ++b) own[b] += change * by_own[b], side[b] += change * by_side[b];
+    own[4] += change * by_axial.own, side[4] += change * by_axial.side;
+  };
+  const HeightWeight& w = part_ring_[e.ring];
+  for (std::size_t a = 0; a < 2; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    add(2 * w.lower + a, w.of_lower() * force[i], w.of_lower() * slope[i]);
+    add(2 * w.lower + 2 + a, w.upper_fraction * force[i], w.upper_fraction * slope[i]);
+  }
+  add(size - 1, force_z, slope_z);
+}
+
+/// How the part moves at rotation step m, and how that changes, into the balance.
+void StaticEquilibrium::balance_part(std::size_t m) {
+  const auto size = static_cast<Eigen::Index>(part_->size());
+  const auto first = static_cast<std::ptrdiff_t>(m) * size;
+  using Changes = Eigen::Matrix<double, Eigen::Dynamic, 5, Eigen::RowMajor>;
+  const Eigen::VectorXd moved = part_mm_per_N_ * Eigen::Map<const Eigen::VectorXd>(part_N_.data() + first, size);
+  const Changes own = part_mm_per_N_ * Eigen::Map<const Changes>(part_by_own_.data() + 5 * first, size, 5),
+                side = part_mm_per_N_ * Eigen::Map<const Changes>(part_by_side_.data() + 5 * first, size, 5);
+  Eigen::Map<Eigen::VectorXd>(part_mm_.data() + first, size) = moved;
+  for (std::size_t n = 0; n < nodes_; ++n) {
+    const HeightWeight w = height_weight(*part_, model_.node_height_mm()[n]);
+    for (std::size_t a = 0; a < 2; ++a) {
+      const std::size_t at = 2 * (m * nodes_ + n) + a;
+      const auto lower = static_cast<Eigen::Index>(2 * w.lower + a);
+      const auto mix = [&](const auto& of) { return w.of_lower() * of(lower) + w.upper_fraction * of(lower + 2); };
+      left_[at] += mix([&](Eigen::Index i) { return moved[i]; });
+      for (Eigen::Index b = 0; b < 4; ++b) {
+        by_own_[4 * at + static_cast<std::size_t>(b)] += mix([&](Eigen::Index i) { return own(i, b); });
+        by_side_[4 * at + static_cast<std::size_t>(b)] += mix([&](Eigen::Index i) { return side(i, b); });
+      }
+      by_own_axial_[at] += mix([&](Eigen::Index i) { return own(i, 4); });
+      by_side_axial_[at] += mix([&](Eigen::Index i) { return side(i, 4); });
+    }
+  }
+  axial_left_[m] += moved[size - 1];
+  for (Eigen::Index b = 0; b < 5; ++b) {
+    axial_by_own_[5 * m + static_cast<std::size_t>(b)] += own(size - 1, b);
+    axial_by_side_[5 * m + static_cast<std::size_t>(b)] += side(size - 1, b);
+  }
+}
+
+/// Goes `share` of the way to the part's deflection in the second half of a row.
+void StaticEquilibrium::keep_part(double share, std::span<float> row) const {
+  const std::span<float> part = row.last(row.size() / 2);
+  const removal::AxialRow axial(part.last(2 * steps_));
+  const auto towards = [&](double was, double is) { return was + share * (is - was); };
+  for (std::size_t m = 0; m < steps_; ++m) {
+    const Eigen::VectorXd moved = Eigen::Map<const Eigen::VectorXd>(part_mm_.data() + m * part_->size(),
+                                                                    static_cast<Eigen::Index>(part_->size()));
+    for (std::size_t n = 0; n < nodes_; ++n) {
+      const Vec2 at = lateral_at(*part_, model_.node_height_mm()[n], moved);
+      for (std::size_t a = 0; a < 2; ++a) {
+        float& v = part[2 * (n * steps_ + m) + a];
+        v = static_cast<float>(towards(static_cast<double>(v), at[static_cast<Eigen::Index>(a)]));
+      }
+    }
+    axial.set(m, towards(axial.at(m), moved[moved.size() - 1]));
+  }
 }
 
 /// (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the deflections x at the first and last
@@ -348,6 +431,7 @@ double StaticEquilibrium::balance_all() {
     for (std::size_t m = from; m < end; ++m) {
       if (stale_[m] == 0) continue;
       balance(m);
+      if (part_) balance_part(m);
       norm_[m] = Eigen::Map<const Eigen::VectorXd>(left_.data() + 2 * m * nodes_, row).lpNorm<Eigen::Infinity>();
       if (axial_) norm_[m] = std::max(norm_[m], std::abs(axial_left_[m]));
     }
@@ -424,11 +508,12 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
                                                  const Motion& motion, double share, std::span<const Vec2> run_out,
                                                  std::span<float> row) {
   run_out_ = run_out;
+  if (part_) part_mm_per_N_ = part_->at(passing);
   for (std::size_t m = 0; m < steps_; ++m)
     for (std::size_t i = 0; i < nodes_; ++i)
       for (std::size_t a = 0; a < 2; ++a)
         read_[2 * (m * nodes_ + i) + a] = static_cast<double>(row[2 * (i * steps_ + m) + a]);
-  const removal::AxialRow axial_row(axial_ ? row.subspan(2 * steps_ * nodes_) : std::span<float>());
+  const removal::AxialRow axial_row(axial_ ? row.subspan(2 * steps_ * nodes_, 2 * steps_) : std::span<float>());
   for (std::size_t m = 0; axial_ && m < steps_; ++m) axial_read_[m] = axial_row.at(m);
   deflection_ = read_;
   axial_deflection_ = axial_read_;
@@ -482,6 +567,7 @@ StaticEquilibrium::Step StaticEquilibrium::solve(std::span<removal::DeflectedChi
       }
   for (std::size_t m = 0; axial_ && m < steps_; ++m)
     axial_row.set(m, axial_read_[m] + share * (axial_deflection_[m] - axial_read_[m]));
+  if (part_) keep_part(share, row);
   return out;
 }
 

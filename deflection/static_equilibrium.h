@@ -35,6 +35,7 @@ class StaticEquilibrium {
   /// chips: as read with the displacements in `row` (of a DeflectionTable): deflections, and `run_out` where there is
   /// any: the axis' offset at each rotation step, mm, or empty. Goes `share` of the way from `row` to the equilibrium
   /// row = run_out + C F; the chips' thickness follows.
+  /// With a part that yields the row has its deflection as well, and what of it is the part's.
   Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion, double share,
              std::span<const Vec2> run_out, std::span<float> row);
 
@@ -71,6 +72,11 @@ class StaticEquilibrium {
   void balance_axial(std::size_t m, double force_z, double slope_z, const std::array<double, 4>& by_own,
                      const std::array<double, 4>& by_side, const AxialChange& by_axial);
   double balance_all();
+  void gather_part(const Element& e, std::size_t m, const Vec2& force, double force_z, const Vec2& slope,
+                   double slope_z, const std::array<double, 4>& by_own, const std::array<double, 4>& by_side,
+                   const AxialChange& by_axial);
+  void balance_part(std::size_t m);
+  void keep_part(double share, std::span<float> row) const;
   template <int kUnknowns>
   void solve_coarse();
   void advance();
@@ -89,7 +95,14 @@ class StaticEquilibrium {
   double max_lean_mm_ = 0;
   bool first_stamp_ = false;
   std::span<const Vec2> run_out_;  ///< of the rotation steps; empty: none
-  bool axial_;                     ///< the tool yields along its axis
+  bool axial_;                     ///< the tool, or the part, yields along the axis
+  // The part, where it yields: compliance of this passing; of rings and nodes their share of its heights; by rotation
+  // step what its heights take, [steps][size], how that changes with the coarse deflections and the axial one of its
+  // own step and of those beside it, [steps][size][5], and how they move, [steps][size].
+  const PartCompliance* part_;
+  Eigen::MatrixXd part_mm_per_N_;
+  std::vector<HeightWeight> part_ring_;
+  std::vector<double> part_N_, part_by_own_, part_by_side_, part_mm_;
   // [steps]: the axial deflection, as the lateral ones below.
   std::vector<double> axial_read_, axial_deflection_, axial_moved_, axial_side_, axial_left_, axial_step_;
   std::vector<double> axial_coarse_;

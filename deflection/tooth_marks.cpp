@@ -24,6 +24,7 @@ removal::DeflectionTable ToothMarks::bending(const removal::DeflectionTable& def
                                              std::size_t count, std::size_t passing) const {
   const int pitch = deflections.steps, turn = pitch * teeth_.count();
   removal::DeflectionTable out(count, turn, deflections.node_height_mm, deflections.axial);
+  out.edges_end_mm = deflections.edges_end_mm;
   const auto last = static_cast<std::ptrdiff_t>(deflections.stamps) - 1;
   for (std::size_t k = 0; k < count; ++k) {
     const auto stamp = static_cast<std::ptrdiff_t>(from + k);

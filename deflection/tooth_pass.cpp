@@ -30,18 +30,20 @@ double axial_compliance_mm_per_N(const Beam& beam, double axis) {
 
 ToothPassModel::ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material,
                                const Beam& beam, std::vector<double> nodes, double edge_ramp_mm, Teeth teeth,
-                               const Vec3& axis_compliance)
+                               const Vec3& axis_compliance, const PartCompliance* part)
     : envelope_(envelope),
       material_(material),
       edge_ramp_mm_(edge_ramp_mm),
       axis_compliance_(axis_compliance.head<2>()),
       axial_compliance_mm_per_N_(deflection::axial_compliance_mm_per_N(beam, axis_compliance.z())),
       teeth_(std::move(teeth)),
-      node_height_mm_(std::move(nodes)) {
+      node_height_mm_(std::move(nodes)),
+      part_(part) {
   for (int j = 0; j < teeth_.count(); ++j) tooth_step_.push_back(teeth_.offset_steps(j, envelope.steps));
   for (const auto& ring : envelope.rings) {
     const double z = ring.profile.height_mm;
     for (const double node : node_height_mm_) compliance_.push_back(beam.compliance_mm_per_N(node, z));
+    if (part_) part_weight_.push_back(height_weight(*part_, z));
   }
 }
 

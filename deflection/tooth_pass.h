@@ -5,6 +5,7 @@
 
 #include "deflection/beam.h"
 #include "deflection/chip_ends.h"
+#include "deflection/part_compliance.h"
 #include "deflection/teeth.h"
 #include "deflection/tool_frame.h"
 #include "machine/job.h"
@@ -51,10 +52,12 @@ class ToothPassModel {
  public:
   ToothPassModel(const removal::EnvelopeGrid& envelope, const machine::Material& material, const Beam& beam,
                  std::vector<double> node_height_mm, double edge_ramp_mm, Teeth teeth,
-                 const Vec3& axis_compliance_mm_per_N = Vec3::Zero());
+                 const Vec3& axis_compliance_mm_per_N = Vec3::Zero(), const PartCompliance* part = nullptr);
 
-  /// The tool yields along its axis.
-  bool axial() const { return axial_compliance_mm_per_N_ > 0; }
+  /// The tool, or the part under it, yields along the axis.
+  bool axial() const { return axial_compliance_mm_per_N_ > 0 || part_ != nullptr; }
+  /// Of this run; null: the part does not yield.
+  const PartCompliance* part() const { return part_; }
   /// Of the whole tool, machine and all, along its axis to an axial force at the tip. A force higher up stretches less
   /// of the bar; of a hundred newtons that is hundredths of a micrometre.
   double axial_compliance_mm_per_N() const { return axial_compliance_mm_per_N_; }
@@ -65,7 +68,8 @@ class ToothPassModel {
   void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const removal::ToothMotion& motion,
                 ToothPass& out) const;
   /// The same for chips in blocks, with the instants at which each edge element enters and leaves the material; without
-  /// feedback. fine_mm: takes the deflection of steps * kFine rotation steps, a row of removal::DeflectionTable.
+  /// feedback. fine_mm: takes the deflection of steps * kFine rotation steps, a row of removal::DeflectionTable, with
+  /// the part's where part() is given; `passing` then counts the stamps of the run.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const removal::ToothMotion& motion, ToothPass& out, std::span<float> fine_mm) const;
   /// The edge elements of the chips, including those with negative thickness.
@@ -106,7 +110,10 @@ class ToothPassModel {
   void add(const removal::ChipSample& chip, double thickness_mm, const EdgeDirections& d, std::uint32_t ring,
            std::size_t m, std::vector<double>& deflection, ToothPass& out) const;
 
-  void add_end(const ChipEnd& end, double* sums, std::size_t row, std::span<float> fine_mm) const;
+  void add_end(const ChipEnd& end, double* sums, std::size_t row, std::span<float> fine_mm,
+               std::span<double> fine_N) const;
+  /// Adds the part's deflection to a row. fine_N: forces as PartCompliance gathers them, [size][steps * kFine].
+  void add_part(std::size_t passing, std::span<const double> fine_N, std::span<float> fine_mm) const;
 
   const removal::EnvelopeGrid& envelope_;
   machine::Material material_;
@@ -117,6 +124,8 @@ class ToothPassModel {
   std::vector<int> tooth_step_;  ///< rotation steps from tooth 0 to each tooth
   std::vector<double> node_height_mm_;
   std::vector<double> compliance_;  ///< [rings][nodes], mm/N
+  const PartCompliance* part_;
+  std::vector<HeightWeight> part_weight_;  ///< of each ring
 };
 
 /// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, where 12 nodes suffice at most 2 mm or a tenth

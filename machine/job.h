@@ -69,6 +69,18 @@ struct Cylinder {
   double diameter_mm = 0, height_mm = 0;
 };
 
+/// The part as an elastic body.
+struct Workpiece {
+  double youngs_modulus_MPa = 0;
+  double poisson_ratio = 0.33;
+  bool fixed_bottom = true;                      ///< held at the lowest level of the stock
+  std::vector<Box> fixed_boxes;                  ///< held inside
+  std::string fixed_mesh;                        ///< STL: held inside; empty: none
+  double fixture_stiffness_N_per_mm = kNoLimit;  ///< of all that holds it, in every direction
+  double cell_mm = 0;                            ///< of its elastic model; 0: chosen (simulate/part_survey.h)
+  Diagnostic place;  ///< an error without a message where `fixed` stands, or else [workpiece]
+};
+
 /// One of box, cylinder, mesh, vdb.
 struct StockDescription {
   std::optional<Box> box;
@@ -179,6 +191,7 @@ struct Job {
   std::vector<Feature> features{};  ///< that predict and compensate evaluate
   std::optional<ModelError> model_error{};
   std::vector<Mode> workpiece_modes{};  ///< of the work on its table; empty: it is rigid
+  std::optional<Workpiece> workpiece{};  ///< not given: rigid
 };
 
 /// Reads the job and its machine file. Throws InputError with file:line:column.

@@ -99,6 +99,14 @@ inline constexpr std::array kCompensationKeys{
     NumberKey<CompensationSettings>{"pass_allowance_mm", &CompensationSettings::pass_allowance_mm, kNotNegative},
 };
 
+inline constexpr NumberRange kPoissonRatio{.min = 0, .max = 0.49};
+inline constexpr std::array kWorkpieceKeys{
+    NumberKey<Workpiece>{"poisson_ratio", &Workpiece::poisson_ratio, kPoissonRatio},
+    NumberKey<Workpiece>{"fixture_stiffness_N_per_um", &Workpiece::fixture_stiffness_N_per_mm, kPositiveOrInf,
+                         kNewtonsPerMicrometre},
+    NumberKey<Workpiece>{"cell_mm", &Workpiece::cell_mm, kNotNegative},
+};
+
 /// Of [adapt] limits.
 struct LimitKey {
   std::string_view key;

@@ -253,6 +253,61 @@ void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool
   table.finish();
 }
 
+constexpr std::string_view kFixedWanted =
+    "\"bottom\", a list of boxes such as [[[x, y, z], [x, y, z]]], or the path of an STL file in quotes";
+
+/// The corners of boxes, two by two: [[x, y, z], [x, y, z]] is one box, and a list of such are several.
+std::optional<std::vector<Vec3>> corners_of(const TomlNode& list) {
+  std::vector<Vec3> out;
+  for (const TomlNode& item : list.items) {
+    if (item.kind != TomlNode::Kind::array) return std::nullopt;
+    const bool box = !item.items.empty() && item.items[0].kind == TomlNode::Kind::array;
+    if (box) {
+      const auto own = corners_of(item);
+      if (!own || own->size() != 2) return std::nullopt;
+      out.insert(out.end(), own->begin(), own->end());
+      continue;
+    }
+    if (item.items.size() != 3) return std::nullopt;
+    for (const TomlNode& n : item.items)
+      if (n.kind != TomlNode::Kind::number) return std::nullopt;
+    out.emplace_back(item.items[0].number, item.items[1].number, item.items[2].number);
+  }
+  if (out.empty() || out.size() % 2 != 0) return std::nullopt;
+  return out;
+}
+
+void read_fixed_boxes(TomlTable& table, Workpiece& workpiece) {
+  table.ignore("fixed");
+  workpiece.fixed_bottom = false;
+  const auto entry = std::ranges::find(table.entries(), "fixed", &TomlNode::Entry::key);
+  const auto corners = corners_of(entry->value);
+  if (!corners)
+    return table.error_at("fixed", fmt::format("fixed is not a list of boxes; {} was expected", kFixedWanted),
+                          "value-type");
+  for (std::size_t i = 0; i < corners->size(); i += 2)
+    workpiece.fixed_boxes.push_back(
+        {(*corners)[i].cwiseMin((*corners)[i + 1]), (*corners)[i].cwiseMax((*corners)[i + 1])});
+}
+
+void read_fixed(TomlTable& table, const fs::path& folder, Workpiece& workpiece) {
+  if (!table.has("fixed")) return;
+  if (table.is_list("fixed")) return read_fixed_boxes(table, workpiece);
+  if (table.text("fixed", "") == "bottom") return;
+  workpiece.fixed_bottom = false;
+  workpiece.fixed_mesh = file_at(table, "fixed", folder);
+}
+
+Workpiece read_workpiece(TomlTable table, const fs::path& folder) {
+  Workpiece out;
+  out.place = table.place_of("fixed");
+  out.youngs_modulus_MPa = MPa_from_GPa(table.required_number("youngs_modulus_GPa", kPositive));
+  read_numbers<Workpiece>(table, kWorkpieceKeys, out);
+  read_fixed(table, folder, out);
+  table.finish();
+  return out;
+}
+
 void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& diagnostics) {
   read_tools(top, folder, job.inch.value_or(false), job.tools, diagnostics);
   if (job.tools.empty() && !top.has("tool")) top.missing("[tool.1]", "a table for each tool of the program");
@@ -274,7 +329,13 @@ void read_tables(TomlTable& top, const fs::path& folder, Job& job, Diagnostics& 
   if (auto adapt = top.table("adapt")) job.adapt = read_adapt(*adapt);
   job.features = read_features(top, folder);
   job.model_error = read_model_error(top);
-  if (auto workpiece = top.table("workpiece")) job.workpiece_modes = read_modes(*workpiece), workpiece->finish();
+  if (auto workpiece = top.table("workpiece")) {
+    job.workpiece_modes = read_modes(*workpiece);
+    if (job.workpiece_modes.empty() || workpiece->has("youngs_modulus_GPa"))
+      job.workpiece = read_workpiece(*workpiece, folder);
+    else
+      workpiece->finish();
+  }
 }
 
 }  // namespace

@@ -109,6 +109,19 @@ std::string adapt_text(const AdaptSettings& a) {
          toml_lines<AdaptSettings>(kAdaptKeys, a);
 }
 
+std::string box_text(const Box& box) { return fmt::format("[{}, {}]", point_text(box.min_mm), point_text(box.max_mm)); }
+
+std::string workpiece_text(const Workpiece& w) {
+  std::string out = "\n[workpiece]\n" + toml_line("youngs_modulus_GPa", w.youngs_modulus_MPa, kGigapascals);
+  std::string boxes;
+  for (const Box& box : w.fixed_boxes) boxes += (boxes.empty() ? "" : ", ") + box_text(box);
+  if (!boxes.empty())
+    out += fmt::format("fixed = [{}]\n", boxes);
+  else
+    out += toml_line("fixed", w.fixed_mesh.empty() ? "bottom" : w.fixed_mesh);
+  return out + toml_lines<Workpiece>(kWorkpieceKeys, w);
+}
+
 }  // namespace
 
 std::string tool_toml(const Tool& tool) { return tool_text(tool, {}); }
@@ -129,6 +142,7 @@ std::string to_toml(const Job& job) {
   out += compensation_text(job.compensation);
   if (job.adapt) out += adapt_text(*job.adapt);
   out += features_text(job.features, job.model_error);
+  if (job.workpiece) out += workpiece_text(*job.workpiece);
   return out + modes_text(job.workpiece_modes, "workpiece");
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kSeparatorWords{",", ";", "tab"};
 constexpr std::array kSeparators{',', ';', '\t'};
-constexpr std::array<std::string_view, 3> kCsvUnitWords{"mm", "um", "inch"};
+constexpr std::array<std::string_view, 3> kMeasuredUnitWords{"mm", "um", "inch"};
 constexpr std::array kMmPerUnit{1.0, 1e-3, 25.4};
 
 struct Cell {
@@ -153,7 +153,7 @@ MeasuredColumns read_measured_columns(const std::string& path, Diagnostics& diag
         std::pair{"upper", &MeasuredColumns::upper}})
     out.*field = top.text(key, out.*field);
   out.separator = kSeparators[top.choice("separator", kSeparatorWords, 0)];
-  out.mm_per_unit = kMmPerUnit[top.choice("unit", kCsvUnitWords, 0)];
+  out.mm_per_unit = kMmPerUnit[top.choice("unit", kMeasuredUnitWords, 0)];
   top.finish();
   diagnostics.throw_if_errors();
   return out;

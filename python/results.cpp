@@ -99,6 +99,8 @@ void add_tables(py::module_& module) {
       .add("block", &ErrorPoint::block)
       .add("tool", &ErrorPoint::tool)
       .add("valid", &ErrorPoint::valid)
+      .add("tool_deflection_um", &ErrorPoint::tool_deflection_um)
+      .add("part_deflection_um", &ErrorPoint::part_deflection_um)
       .add_vectors("points", &ErrorPoint::x_mm)
       .add_vectors("normals", &ErrorPoint::nx);
   TableClass<CompensatedPoint>(module, "CompensatedPoints")
@@ -320,6 +322,8 @@ void add_predict_and_compensate(py::module_& module) {
                      .def_readonly("stock_mm3", &PredictResult::stock_mm3)
                      .def_readonly("form_error_um", &PredictResult::form_error_um)
                      .def_readonly("deflection_um", &PredictResult::deflection_um)
+                     .def_readonly("tool_deflection_um", &PredictResult::tool_deflection_um)
+                     .def_readonly("part_deflection_um", &PredictResult::part_deflection_um)
                      .def_readonly("contour_um", &PredictResult::contour_um)
                      .def_readonly("unseen_mm2", &PredictResult::unseen_mm2)
                      .def_readonly("trace", &PredictResult::trace)

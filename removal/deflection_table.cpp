@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "base/vector_clones.h"
 
@@ -36,6 +37,16 @@ double DeflectionTable::largest_axial_mm(std::ptrdiff_t k) const {
   float largest = 0;
   for (int m = 0; axial && m < steps; ++m) largest = std::max(largest, std::abs(axial_mm(row(k), m)));
   return static_cast<double>(largest);
+}
+
+DeflectionTable DeflectionTable::of_tool_alone() const {
+  assert(parts);
+  DeflectionTable out(stamps, steps, node_height_mm, axial);
+  out.edges_end_mm = edges_end_mm;
+  const std::size_t size = out.row_size();
+  for (std::ptrdiff_t k = -1; k < static_cast<std::ptrdiff_t>(stamps); ++k)
+    std::transform(row(k), row(k) + size, row(k) + size, out.row(k), std::minus<>());
+  return out;
 }
 
 NodeWeight node_weight(const std::vector<double>& nodes, double height) {

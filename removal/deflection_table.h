@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,19 +29,30 @@ struct DeflectionTable {
   int steps = 0;                       ///< per pitch
   std::vector<double> node_height_mm;  ///< above the tip, ascending, evenly spaced, the first 0
   bool axial = false;                  ///< rows have axial deflections; else these are 0
+  bool parts = false;                  ///< each row is followed by what of it is the part's, in the same order
+  /// Above the tip: where edges end. Higher up the tool leaves no mark, and a deflected one carves nothing but by a
+  /// general cutter or a tilted one: what stands there has sprung back behind an edge of an earlier cut.
+  double edges_end_mm = std::numeric_limits<double>::infinity();
   /// [stamps + 1], of each [nodes][steps][2], mm, then, where they are axial, [steps][2]: the axial deflection of the
   /// step and that of the next one.
   std::vector<float> values;
 
   DeflectionTable() = default;
-  DeflectionTable(std::size_t stamp_count, int steps_per_pitch, std::vector<double> heights, bool with_axial = false)
-      : stamps(stamp_count), steps(steps_per_pitch), node_height_mm(std::move(heights)), axial(with_axial) {
+  DeflectionTable(std::size_t stamp_count, int steps_per_pitch, std::vector<double> heights, bool with_axial = false,
+                  bool with_parts = false)
+      : stamps(stamp_count),
+        steps(steps_per_pitch),
+        node_height_mm(std::move(heights)),
+        axial(with_axial),
+        parts(with_parts) {
     assert(std::ranges::is_sorted(node_height_mm));
     assert(!node_height_mm.empty() && node_height_mm.front() == 0);
     values.assign((stamps + 1) * row_size(), 0.0f);
   }
   std::size_t nodes() const { return node_height_mm.size(); }
-  std::size_t row_size() const { return lateral_size() + (axial ? static_cast<std::size_t>(steps) * 2 : 0); }
+  std::size_t row_size() const { return whole_size() * (parts ? 2 : 1); }
+  /// Of a row, without what of it is the part's.
+  std::size_t whole_size() const { return lateral_size() + (axial ? static_cast<std::size_t>(steps) * 2 : 0); }
   /// Of a row, without its axial deflections.
   std::size_t lateral_size() const { return nodes() * static_cast<std::size_t>(steps) * 2; }
   /// Row of stamp k of the stretch; -1 is the stamp before it.
@@ -56,6 +68,9 @@ struct DeflectionTable {
     const double lateral = largest_lateral_mm(k);
     return axial ? std::hypot(lateral, largest_axial_mm(k)) : lateral;
   }
+
+  /// Without what is the part's. Requires `parts`.
+  DeflectionTable of_tool_alone() const;
 
   /// Deflection of one row at a height and a rotation step (with its fraction), linear between nodes and steps.
   /// simd/deflection_lanes.h is the vectorized version.

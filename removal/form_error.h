@@ -56,6 +56,7 @@ struct SurfacePoint {
   std::int32_t machined_stamp = -1;  ///< stamp that last cut the machined field there; -1: none
   /// Of contour_mm: what the axes' lag and the control's path tolerance do by themselves (simulate/contour.h).
   float lag_mm = 0, path_tolerance_mm = 0;
+  float part_mm = 0;  ///< of error_mm, what the part's own deflection does
   bool valid = true;  ///< false: left where the model does not hold (simulate/validity.h); in no figure
 };
 

@@ -32,6 +32,7 @@ Json plain(const compensate::PlainFigures& p) {
   Json j = {{"error_um", figures_json(p.error_um)},
             {"deflection_um", figures_json(p.deflection_um)},
             {"contour_um", figures_json(p.contour_um)}};
+  if (p.tool_um) j["tool_deflection_um"] = figures_json(*p.tool_um), j["part_deflection_um"] = figures_json(*p.part_um);
   if (p.total_um) j["total_error_um"] = figures_json(*p.total_um);
   j["in_band_share"] = p.in_band_fraction;
   return j;

@@ -57,7 +57,9 @@ void write_form_error_csv(const std::string& path, const FormErrorPoints& points
   const bool traced = points.count > 0 && std::isfinite(points.at(0).model_error_um);
   std::string text =
       "x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid";
-  text += traced ? ",model_error_um,difference_um\n" : "\n";
+  const bool yields = points.count > 0 && points.at(0).part_yields();
+  if (traced) text += ",model_error_um,difference_um";
+  text += yields ? ",tool_deflection_um,part_deflection_um\n" : "\n";
   for (std::size_t i = 0; i < points.count; ++i) {
     const FormErrorPoint p = points.at(i);
     append_cells(text, 4, {p.place_mm.x(), p.place_mm.y(), p.place_mm.z()});
@@ -70,6 +72,7 @@ void write_form_error_csv(const std::string& path, const FormErrorPoints& points
     append_cells(text, 6, {p.area_mm2});
     append_cells(text, 0, {static_cast<double>(p.block), static_cast<double>(p.tool), p.valid ? 1.0 : 0.0});
     if (traced) append_cells(text, 3, {p.model_error_um, p.error_um - p.model_error_um});
+    if (yields) append_cells(text, 3, {p.tool_um(), p.part_um});
     text.back() = '\n';
     if (text.size() < kFlushBytes) continue;
     file.stream() << text;
@@ -103,6 +106,10 @@ void write_form_error_vtp(const std::string& path, const FormErrorPoints& points
                  [](const auto& p) { return p.model_error_um; });
     write_floats(out, R"(type="Float32" Name="difference_um")", points,
                  [](const auto& p) { return p.error_um - p.model_error_um; });
+  }
+  if (points.count > 0 && points.at(0).part_yields()) {
+    write_floats(out, R"(type="Float32" Name="tool_deflection_um")", points, [](const auto& p) { return p.tool_um(); });
+    write_floats(out, R"(type="Float32" Name="part_deflection_um")", points, [](const auto& p) { return p.part_um; });
   }
   write_vectors(out, R"(type="Float32" Name="normal" NumberOfComponents="3")", points, &FormErrorPoint::normal);
   write_whole_numbers(out, R"(type="Int32" Name="block")", points.count,

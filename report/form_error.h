@@ -18,6 +18,10 @@ struct FormErrorPoint {
   double error_um = 0;    ///< machined minus nominal surface along the normal; positive: excess material
   double contour_um = 0;  ///< of it, what servo lag and corner rounding do to the target program
   double deflection_um() const { return error_um - contour_um; }
+  /// Of deflection_um(), the part's; NaN: the part is rigid.
+  double part_um = std::numeric_limits<double>::quiet_NaN();
+  bool part_yields() const { return part_um == part_um; }
+  double tool_um() const { return part_yields() ? deflection_um() - part_um : deflection_um(); }
   double area_mm2 = 0;                                               ///< represented by the point
   double total_error_um = std::numeric_limits<double>::quiet_NaN();  ///< against the part's mesh; NaN: no mesh
   double model_error_um = std::numeric_limits<double>::quiet_NaN();  ///< of a trace: the feed model's; NaN: no trace
@@ -34,12 +38,14 @@ struct FormErrorPoints {
 
 /// Columns x_mm,y_mm,z_mm,nx,ny,nz,error_um,deflection_um,contour_um,total_error_um,area_mm2,block,tool,valid; every
 /// figure of the form error can be worked out again from the rows whose `valid` is 1. total_error_um is empty where
-/// there is none. Of a trace model_error_um,difference_um follow: the feed model's error, and error_um minus that.
+/// there is none. Of a trace model_error_um,difference_um follow: the feed model's error, and error_um minus that; of a
+/// part that yields tool_deflection_um,part_deflection_um, whose sum is deflection_um.
 /// Throws InputError [file-unwritable].
 void write_form_error_csv(const std::string& path, const FormErrorPoints& points);
 
 /// The same points for ParaView (VTK PolyData, XML, base64): normals, error_um, deflection_um, contour_um, area_mm2,
-/// block, tool, valid and, where there is one, total_error_um. Throws InputError [file-unwritable].
+/// block, tool, valid and, where there are such, total_error_um and the columns that follow in the CSV. Throws
+/// InputError [file-unwritable].
 void write_form_error_vtp(const std::string& path, const FormErrorPoints& points);
 
 /// Blue, white, red for -1, 0, 1.

@@ -68,6 +68,10 @@ void add_parts(ReportData& data, const simulate::Prediction& p) {
   };
   part("due to deflection, rms", p.deflection_um.rms, "deflection_um.rms");
   part("due to deflection, 95th percentile", p.deflection_um.p95, "deflection_um.p95");
+  if (p.deflection_parts_um) {
+    part("of it of the tool, 95th percentile", p.deflection_parts_um->tool_um.p95, "tool_deflection_um.p95");
+    part("of it of the workpiece, 95th percentile", p.deflection_parts_um->part_um.p95, "part_deflection_um.p95");
+  }
   part("due to servo lag and corner rounding, rms", p.contour_um.rms, "contour_um.rms");
   part("due to servo lag and corner rounding, 95th percentile", p.contour_um.p95, "contour_um.p95");
   if (!p.contour_parts_um) return;
@@ -193,6 +197,7 @@ FormErrorPoints form_error_points(const SimulatedProgram& program, const simulat
                                  .contour_um = 1000 * p.contour_mm,
                                  .area_mm2 = p.area_mm2};
             point.valid = p.valid;
+            if (prediction.deflection_parts_um) point.part_um = 1000 * static_cast<double>(p.part_mm);
             if (!prediction.total_error_mm.empty()) point.total_error_um = 1000 * prediction.total_error_mm[i];
             if (traced) point.model_error_um = 1000 * traced->predicted.surface[i].error_mm;
             if (p.machined_stamp >= 0) {

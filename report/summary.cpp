@@ -149,6 +149,28 @@ std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& progr
 
 namespace {
 
+void add_workpiece(const simulate::Prediction::DeflectionFigures& d, Json& j) {
+  j["tool_deflection_um"] = figures_json(d.tool_um);
+  j["part_deflection_um"] = figures_json(d.part_um);
+  j["workpiece"] = {{"cell_mm", d.survey->cell_mm},
+                    {"cells", d.survey->cells},
+                    {"places", d.survey->solved},
+                    {"compliance_max_um_per_N", d.survey->compliance_max_um_per_N},
+                    {"compute_s", d.survey->seconds}};
+}
+
+std::string workpiece_text(const simulate::PartSurvey& s) {
+  return fmt::format("workpiece: up to {:.3f} um/N under the tool; {} places, {} cells of {:.2f} mm, {:.1f} s\n",
+                     s.compliance_max_um_per_N, s.solved, s.cells, s.cell_mm, s.seconds);
+}
+
+/// Rows of what the deflection is made of, each after a line end.
+std::string deflection_parts_text(const simulate::Prediction& p) {
+  if (!p.deflection_parts_um) return {};
+  return "\n" + figures_row("  tool", p.deflection_parts_um->tool_um) + "\n" +
+         figures_row("  workpiece", p.deflection_parts_um->part_um);
+}
+
 /// What the model does not cover; figures of which it covers less than half are null.
 void add_beyond_model(const simulate::SimulatedProgram& program, const simulate::Prediction& p, Json& j) {
   const simulate::Validity& v = p.validity;
@@ -259,6 +281,7 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   if (p.holes.any()) j["holes"] = holes(p.holes);
   j["form_error_um"] = form_error(p);
   j["deflection_um"] = figures_json(p.deflection_um);
+  if (p.deflection_parts_um) add_workpiece(*p.deflection_parts_um, j);
   j["contour_um"] = figures_json(p.contour_um);
   if (p.contour_parts_um)
     j["contour_parts_um"] = {{"lag", figures_json(p.contour_parts_um->lag_um)},
@@ -312,7 +335,8 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
   if (p.holes.any()) out += holes_text(p.holes);
   if (no_errors) return out + "deflection and form error: beyond the model's range\n";
   fmt::format_to(std::back_inserter(out), "{}\n{}\n{}\n{}\n", kFiguresHead, figures_row("error", p.form_error_um),
-                 figures_row(" deflection", p.deflection_um), figures_row(" contour", p.contour_um));
+                 figures_row(" deflection", p.deflection_um) + deflection_parts_text(p),
+                 figures_row(" contour", p.contour_um));
   if (p.contour_parts_um)
     fmt::format_to(std::back_inserter(out), "{}\n{}\n{}\n", figures_row("  lag", p.contour_parts_um->lag_um),
                    figures_row("  tolerance", p.contour_parts_um->path_tolerance_um),
@@ -323,6 +347,7 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
     fmt::format_to(std::back_inserter(out), "beyond the model, in no figure: {:.1f} of {:.1f} mm2\n",
                    p.validity.invalid_mm2, p.validity.surface_mm2);
   if (traced) out += traced_text(*traced);
+  if (p.deflection_parts_um) out += workpiece_text(*p.deflection_parts_um->survey);
   return out + region_text({p.border_mm2, p.not_judged_mm2, p.between});
 }
 

@@ -135,6 +135,10 @@ std::string plain_figures_text(const CompensationResult& c) {
   };
   rows("error", [](const auto& p) { return p.error_um; });
   rows(" deflection", [](const auto& p) { return p.deflection_um; });
+  if (c.plain_before.part_um && c.plain_after.part_um) {
+    rows("  tool", [](const auto& p) { return *p.tool_um; });
+    rows("  workpiece", [](const auto& p) { return *p.part_um; });
+  }
   out += plain_row(" contour", c.plain_after.contour_um);
   if (c.plain_after.total_um) rows("against part", [](const auto& p) { return *p.total_um; });
   return out + seen_text(c.plain_after.error_um.area_mm2, c.unseen_mm2, {c.border_mm2, c.not_judged_mm2, c.between},

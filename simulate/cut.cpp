@@ -85,13 +85,14 @@ class Cutter {
         options_(options),
         rigid_(options.coupling == machine::Coupling::rigid),
         diameter_mm_(tool.diameter_mm),
+        edges_end_mm_(tool.flute_length_mm.value_or(std::numeric_limits<double>::infinity())),
         top_mm_(engaged_top_mm(stock, tool, stamps)),
         envelope_(sampled_envelope(stock, tool, top_mm_, options)),
         model_(envelope_, material, deflection::beam_of(tool),
                deflection::node_heights(top_mm_,
                                         std::min(tool.overhang_mm, tool.flute_length_mm.value_or(tool.overhang_mm))),
                rigid_ ? 0.0 : options.edge_ramp_mm, teeth_in_model(Teeth(tool), rigid_),
-               options.axis_compliance_mm_per_N) {
+               options.axis_compliance_mm_per_N, options.drilling ? nullptr : options.part) {
     if (!options.blank) own_blank_.emplace(stock);
     blank_ = options.blank ? options.blank : &*own_blank_;
     const Teeth teeth(tool), modelled = teeth_in_model(teeth, rigid_);
@@ -108,7 +109,8 @@ class Cutter {
     // Rigid: every row is written anew, and a hole's are not read.
     if (!rigid_ || deflections_.stamps != stamps.size())
       deflections_ = DeflectionTable(stamps.size(), (rigid_ ? kFine : 1) * model_.steps(), model_.node_height_mm(),
-                                     model_.axial());
+                                     model_.axial(), model_.part() != nullptr);
+    if (model_.part()) deflections_.edges_end_mm = edges_end_mm_;
     DeflectionTable& deflections = deflections_;
     if (last_rows_.size() >= deflections.row_size())
       std::copy_n(last_rows_.end() - static_cast<std::ptrdiff_t>(deflections.row_size()), deflections.row_size(),
@@ -119,13 +121,15 @@ class Cutter {
     else
       settle(all, from, deflections, loads, first_id, result);
     if (!options_.drilling) watch_range(stamps, deflections, loads, result);
+    const auto id = first_id + static_cast<std::int32_t>(from);
     if (tooth_marks_) {
-      leave_uneven(stamps, from, deflections, contacts, first_id + static_cast<std::int32_t>(from), loads);
+      leave_uneven(stamps, from, deflections, contacts, id, loads);
     } else {
-      if (options_.surface) mark(stamps, deflections, first_id + static_cast<std::int32_t>(from));
+      if (options_.surface) mark(*options_.surface, stamps, deflections, id);
       tell_contacts(envelope_, stamps, run_out_.none() ? deflections : without_run_out(deflections, from), contacts,
                     loads);
     }
+    if (options_.tool_surface) mark_tool_alone(stamps, from, deflections, id);
     for (const StampLoad& load : loads) result.chip_mm3 += load.chip_mm3;
     result.loads.insert(result.loads.end(), loads.begin(), loads.end());
     keep_last_rows(deflections);
@@ -320,30 +324,50 @@ class Cutter {
   /// there are teeth, and as many times fewer at once.
   void leave_uneven(std::span<const Stamp> stamps, std::size_t passings, const DeflectionTable& deflections,
                     std::span<const Contact> contacts, std::int32_t first_id, std::span<StampLoad> loads) const {
-    const std::size_t part = stamps.size() / static_cast<std::size_t>(envelope_.flutes) + 1;
-    for (std::size_t from = 0; from < stamps.size(); from += part) {
-      const std::size_t count = std::min(part, stamps.size() - from);
-      DeflectionTable own = tooth_marks_->bending(deflections, from, count, passings + from);
+    for_uneven(stamps.size(), deflections, passings, [&](std::size_t from, std::size_t count, DeflectionTable& own) {
       if (!contacts.empty())
         tell_contacts(tooth_marks_->envelope(), stamps.subspan(from, count), own, contacts.subspan(from, count),
                       loads.subspan(from, count));
-      if (!options_.surface) continue;
+      if (!options_.surface) return;
       tooth_marks_->add_run_out(own, passings + from);
       options_.surface->mark(tooth_marks_->envelope(), stamps.subspan(from, count), own,
                              first_id + static_cast<std::int32_t>(from));
+    });
+  }
+
+  /// Calls f(from, count, deflections of each tooth) for parts of a stretch of teeth that are not even.
+  template <class Function>
+  void for_uneven(std::size_t stamps, const DeflectionTable& deflections, std::size_t passings, Function f) const {
+    const std::size_t part = stamps / static_cast<std::size_t>(envelope_.flutes) + 1;
+    for (std::size_t from = 0; from < stamps; from += part) {
+      const std::size_t count = std::min(part, stamps - from);
+      DeflectionTable own = tooth_marks_->bending(deflections, from, count, passings + from);
+      f(from, count, own);
     }
   }
 
+  /// The marks as the same cut would leave them on a part that does not yield.
+  void mark_tool_alone(std::span<const Stamp> stamps, std::size_t passings, const DeflectionTable& deflections,
+                       std::int32_t first_id) const {
+    const DeflectionTable tool = deflections.parts ? deflections.of_tool_alone() : deflections;
+    if (!tooth_marks_) return mark(*options_.tool_surface, stamps, tool, first_id);
+    for_uneven(stamps.size(), tool, passings, [&](std::size_t from, std::size_t count, DeflectionTable& own) {
+      tooth_marks_->add_run_out(own, passings + from);
+      options_.tool_surface->mark(tooth_marks_->envelope(), stamps.subspan(from, count), own,
+                                  first_id + static_cast<std::int32_t>(from));
+    });
+  }
+
   /// Of a hole its deepest stamp says all.
-  void mark(std::span<const Stamp> stamps, const DeflectionTable& deflections, std::int32_t first_id) const {
-    if (!options_.drilling) return options_.surface->mark(envelope_, stamps, deflections, first_id);
+  void mark(removal::SurfaceMap& surface, std::span<const Stamp> stamps, const DeflectionTable& deflections,
+            std::int32_t first_id) const {
+    if (!options_.drilling) return surface.mark(envelope_, stamps, deflections, first_id);
     const DeflectionTable straight(1, model_.steps(), model_.node_height_mm());
     for (std::size_t k = 0; k < stamps.size(); ++k) {
       const bool deeper = k + 1 < stamps.size() &&
                           stamps[k + 1].pose.tip_mm.head<2>() == stamps[k].pose.tip_mm.head<2>() &&
                           stamps[k + 1].move >= stamps[k].move;
-      if (!deeper)
-        options_.surface->mark(envelope_, stamps.subspan(k, 1), straight, first_id + static_cast<std::int32_t>(k));
+      if (!deeper) surface.mark(envelope_, stamps.subspan(k, 1), straight, first_id + static_cast<std::int32_t>(k));
     }
   }
 
@@ -443,7 +467,7 @@ class Cutter {
   const Stock* blank_ = nullptr;  ///< before the first stamp
   const CutOptions& options_;
   bool rigid_;
-  double diameter_mm_;
+  double diameter_mm_, edges_end_mm_;
   double top_mm_;
   EnvelopeGrid envelope_;
   ToothPassModel model_;

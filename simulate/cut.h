@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deflection/chip_arc.h"
+#include "deflection/part_compliance.h"
 #include "deflection/static_cut.h"
 #include "deflection/tooth_pass.h"
 #include "machine/job.h"
@@ -64,6 +65,10 @@ struct CutOptions {
   std::function<void(double)> progress;    ///< completed fraction, 0 to 1
   const removal::Stock* blank = nullptr;   ///< copy of the uncut stock if available; saves a copy
   removal::SurfaceMap* surface = nullptr;  ///< takes the marks of the deflected cutter, if given
+  /// How the part yields along the run; null: it does not.
+  const deflection::PartCompliance* part = nullptr;
+  /// Takes the marks of the same cutter without the part's deflection, if given.
+  removal::SurfaceMap* tool_surface = nullptr;
   /// First stamp of a revolution whose forces are recorded tooth by tooth in CutResult::turn.
   std::optional<std::size_t> turn_from;
   /// Rigid only, not 0: the loads for chips of this ratio to their thickness are recorded as well, as another feed of

@@ -338,6 +338,16 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
   return {std::move(blank), std::move(whole), memory};
 }
 
+namespace {
+
+std::shared_ptr<const PartSurvey> survey_of(const Job& job, const Target& target, const removal::StampPath& path) {
+  PartSurveyOptions options;
+  options.cell_mm = part_cell_mm(job, target.surface, target.map->points());
+  return std::make_shared<const PartSurvey>(survey_part(job, target.blank, path, options));
+}
+
+}  // namespace
+
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics) {
   return make_target(job, target, diagnostics, {});
 }
@@ -377,6 +387,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     mark_contour(job, target.path, out);
   if (work.judged && !work.within) part_contour(job, target, out);
   if (work.judged) mark_region(job, target, out.map->points(), out);
+  if (job.workpiece && !work.within) out.part_yields = survey_of(job, out, target.path);
   out.memory = memory;
   return out;
 }
@@ -391,11 +402,14 @@ struct PathCut {
   const std::function<void(double)>& progress;
   removal::SurfaceMap* surface = nullptr;
   std::vector<std::vector<Contact>> contacts{};  ///< one per run, or empty
+  const PartSurvey* part_yields = nullptr;       ///< along the path
+  removal::SurfaceMap* tool_surface = nullptr;   ///< see CutOptions
 };
 
 CutOptions cut_options_of(const Job& job, const PathCut& how, const machine::Tool& tool) {
   CutOptions out;
   out.surface = how.surface;
+  out.tool_surface = how.tool_surface;
   out.coupling = how.coupling;
   out.chip_ratio = how.chip_ratio;
   out.axis_compliance_mm_per_N = {1 / job.machine.axis[0].stiffness_N_per_mm,
@@ -438,12 +452,16 @@ PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job
   PathLoads out;
   const auto all = static_cast<double>(program.path.stamps.size());
   auto next_contacts = how.contacts.begin();
+  std::size_t run_index = 0;
   out.holes.count = removal::count_holes(program.moves, program.holes);
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     const std::size_t from = run.from;
     const std::vector<Contact> contacts = how.contacts.empty() ? std::vector<Contact>() : std::move(*next_contacts++);
     CutOptions options = cut_options_of(job, how, tool);
     if (from == program.path.runs.front().from) options.blank = &blank;
+    const std::optional<deflection::PartCompliance> part =
+        how.part_yields ? how.part_yields->along(program.path, run_index++) : std::nullopt;
+    if (part) options.part = &*part;
     if (how.progress)
       options.progress = [&](double fraction) {
         how.progress((static_cast<double>(from) + fraction * static_cast<double>(stamps.size())) / all);
@@ -493,6 +511,30 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const PathStretch& pa
                    static_cast<std::int32_t>(run.from), options, piece.bend);
 }
 
+namespace {
+
+/// Of the target's path, or of the program's own where that takes other ways.
+std::shared_ptr<const PartSurvey> part_under(const Job& job, const Target& target, const SimulatedProgram& program) {
+  if (!target.part_yields || target.part_yields->fits(program.path)) return target.part_yields;
+  PartSurveyOptions options;
+  options.cell_mm = target.part_yields->cell_mm;
+  return std::make_shared<const PartSurvey>(survey_part(job, target.blank, program.path, options));
+}
+
+Prediction::DeflectionFigures deflection_figures(const std::vector<removal::SurfacePoint>& surface,
+                                                 std::shared_ptr<const PartSurvey> survey) {
+  std::vector<double> tool, part, area;
+  for (const removal::SurfacePoint& p : surface) {
+    if (!p.valid) continue;
+    part.push_back(1000 * static_cast<double>(p.part_mm));
+    tool.push_back(1000 * (p.error_mm - p.contour_mm) - part.back());
+    area.push_back(p.area_mm2);
+  }
+  return {removal::error_figures(tool, area), removal::error_figures(part, area), std::move(survey)};
+}
+
+}  // namespace
+
 PathLoads predict_loads(const Job& job, const removal::Stock& blank, const SimulatedProgram& program,
                         const LoadOptions& options) {
   removal::Stock stock(blank);
@@ -502,7 +544,8 @@ PathLoads predict_loads(const Job& job, const removal::Stock& blank, const Simul
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
-  if (const CrewScope::Current* now = current_crew(); now && !options.turn_from && options.chip_ratio == 0)
+  if (const CrewScope::Current* now = current_crew();
+      now && !options.turn_from && options.chip_ratio == 0 && !target.part_yields)
     return predict_together(job, target, program, now->crew, now->memory, options.progress);
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
@@ -515,14 +558,27 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
   if (options.surface_read) options.surface_read();
   removal::SurfaceMap map = options.take_map ? options.take_map() : *target.map;
   auto machined = std::make_unique<removal::Stock>(target.blank);
+  const std::shared_ptr<const PartSurvey> part_yields = part_under(job, target, program);
+  std::optional<removal::SurfaceMap> tool_surface;
+  if (part_yields) tool_surface.emplace(map);
   PathLoads loads = cut_path(*machined, target.blank, job, program,
                              {.coupling = job.simulation.coupling,
                               .chip_ratio = options.chip_ratio,
                               .turn_from = options.turn_from,
                               .progress = options.progress,
                               .surface = &map,
-                              .contacts = std::move(contacts_of_runs)});
-  return judge(job, target, program, std::move(loads), map.take(), std::move(machined));
+                              .contacts = std::move(contacts_of_runs),
+                              .part_yields = part_yields.get(),
+                              .tool_surface = tool_surface ? &*tool_surface : nullptr});
+  std::vector<removal::SurfacePoint> surface = map.take();
+  if (tool_surface) {
+    const std::vector<float> of_tool = tool_surface->take_errors_mm();
+    for (std::size_t i = 0; i < surface.size(); ++i)
+      surface[i].part_mm = static_cast<float>(surface[i].error_mm) - of_tool[i];
+  }
+  Prediction out = judge(job, target, program, std::move(loads), std::move(surface), std::move(machined));
+  if (part_yields) out.deflection_parts_um = deflection_figures(out.surface, part_yields);
+  return out;
 }
 
 namespace {

@@ -19,6 +19,7 @@
 #include "simulate/cut.h"
 #include "simulate/holes.h"
 #include "simulate/memory.h"
+#include "simulate/part_survey.h"
 #include "simulate/rotary_motion.h"
 
 namespace camber::simulate {
@@ -88,11 +89,12 @@ struct Target {
   std::optional<removal::Stock> whole{};  ///< the stock before the allowance was removed; empty: `blank`
   std::vector<PathFraction> stamps{};     ///< the nominal path's, on the target program's moves
   std::vector<float> contour_mm{};        ///< one per point of a SurfaceMap of this target; see Prediction::surface
-  std::optional<ContourParts> contour_parts{};  ///< not given: the contour error is small, or rotary axes turn
-  double unseen_mm2 = 0;                        ///< area of the nominal surface without a point
-  MemoryEstimate memory{};                      ///< of a prediction
-  SurfaceRegion region{};                       ///< what of the nominal surface is judged
-  std::optional<removal::SurfaceMap> map{};     ///< points of the nominal surface, without marks
+  std::optional<ContourParts> contour_parts{};      ///< not given: the contour error is small, or rotary axes turn
+  double unseen_mm2 = 0;                            ///< area of the nominal surface without a point
+  MemoryEstimate memory{};                          ///< of a prediction
+  SurfaceRegion region{};                           ///< what of the nominal surface is judged
+  std::optional<removal::SurfaceMap> map{};         ///< points of the nominal surface, without marks
+  std::shared_ptr<const PartSurvey> part_yields{};  ///< along the target's path; null: the part is rigid
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
@@ -155,6 +157,12 @@ struct Prediction {
   };
   std::optional<ContourFigures> contour_parts_um{};
   ChatterMargins chatter{};
+  /// Of deflection_um, where the part yields: what is due to the tool, and to the part.
+  struct DeflectionFigures {
+    removal::ErrorFigures tool_um, part_um;
+    std::shared_ptr<const PartSurvey> survey;
+  };
+  std::optional<DeflectionFigures> deflection_parts_um{};
 };
 
 /// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).

@@ -79,7 +79,7 @@ double nothing_mm3(const HeightSurvey& survey) { return std::pow(survey.cell_mm,
 }  // namespace
 
 bool check_heights(const machine::Job& job, const SimulatedProgram& program, const SimulatedProgram* original,
-                   Diagnostics& diagnostics) {
+                   Diagnostics& diagnostics, const std::function<void(const removal::HeightMap& machined)>& look) {
   const std::optional<machine::Box> stock = stock_box(job);
   if (!stock) return false;
   constexpr double kVisits = 3e9;
@@ -97,6 +97,7 @@ bool check_heights(const machine::Job& job, const SimulatedProgram& program, con
   check_region_start(
       job, program, [&](const machine::Tool&, const ToolPose&) { return survey->starts_in_material; }, diagnostics);
   report_above_flutes(job, program, survey->above_flutes, diagnostics);
+  if (look) look(survey->machined);
   return true;
 }
 

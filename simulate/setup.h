@@ -8,6 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "machine/job.h"
+#include "removal/height_map.h"
 #include "simulate/predict.h"
 
 namespace camber::simulate {
@@ -51,9 +52,9 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
 /// What check_clearance() says, but for the machine's bodies, and whether anything is cut at all ([nothing-removed],
 /// [allowance-too-large]), from a height map of the stock (height_survey.h). False where no height map describes the
 /// job; nothing is said then. Requires a program that is timed. `original`: what the part is judged against, where it
-/// is another program.
+/// is another program. `look` (may be empty) is shown the machined part.
 bool check_heights(const machine::Job& job, const SimulatedProgram& program, const SimulatedProgram* original,
-                   Diagnostics& diagnostics);
+                   Diagnostics& diagnostics, const std::function<void(const removal::HeightMap& machined)>& look = {});
 
 /// Collisions (collisions.h, machine_collisions.h), a region that begins in material (region.h), material above the
 /// flutes (flute_reach.h).

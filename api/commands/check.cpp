@@ -16,6 +16,7 @@
 #include "simulate/machine_collisions.h"
 #include "simulate/pieces.h"
 #include "simulate/setup_checks.h"
+#include "simulate/thin_walls.h"
 
 namespace camber::api {
 namespace {
@@ -82,7 +83,10 @@ double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
     const double bytes = simulate::check_memory_of(job, programs.of_target(), *stock, diagnostics).total();
     diagnostics.throw_if_errors();
     const simulate::SimulatedProgram& program = programs.program;
-    if (simulate::check_heights(job, program, programs.original ? &*programs.original : nullptr, diagnostics)) {
+    if (simulate::check_heights(job, program, programs.original ? &*programs.original : nullptr, diagnostics,
+                                [&](const removal::HeightMap& machined) {
+                                  simulate::suggest_workpiece(job, program, machined, diagnostics);
+                                })) {
       feedmodel::check_range(program.text_moves(), job.program, job.machine, diagnostics);
       simulate::check_machine_collisions(job, program.text, program.text_moves(), diagnostics);
       return bytes;

@@ -31,12 +31,23 @@ void add(const simulate::SectionWork& more, simulate::SectionWork& work) {
   work.voxels += more.voxels;
 }
 
+/// Pieces of a path are cut apart from each other, without what a survey of the part along all of it finds.
+void refuse_elastic_part(const machine::Job& job, Diagnostics& diagnostics) {
+  if (!job.workpiece) return;
+  Diagnostic d = job.workpiece->place;
+  d.message = "[workpiece] is for a prediction in one piece; one without --sections was expected";
+  d.check = "workpiece-sections";
+  diagnostics.add(d);
+  diagnostics.throw_if_errors();
+}
+
 }  // namespace
 
 SectionRun::SectionRun(const machine::Job& job, PartKey key, PartStore& store, StepProgress progress,
                        Diagnostics& diagnostics, std::size_t longest_path)
     : job_(job), key_(std::move(key)), store_(store), progress_(std::move(progress)), diagnostics_(diagnostics) {
   const StageScope stages(progress_);
+  refuse_elastic_part(job, diagnostics);
   const auto check = [&](const simulate::SimulatedProgram& program) {
     diagnostics.append(said_);
     checks::check_program(job, program, diagnostics);

@@ -45,7 +45,7 @@ struct ForceRow {
 struct ErrorPoint {
   double x_mm = 0, y_mm = 0, z_mm = 0, nx = 0, ny = 0, nz = 0;
   double error_um = 0;        ///< machined minus nominal surface, along the normal; positive: excess material
-  double deflection_um = 0;   ///< part due to tool deflection
+  double deflection_um = 0;   ///< part due to the deflection of tool and workpiece
   double contour_um = 0;      ///< part due to servo lag and corner rounding
   double total_error_um = 0;  ///< against the part's mesh; NaN without one
   double model_error_um = 0;  ///< with PredictOptions::trace: the feed model's error_um; else NaN
@@ -53,6 +53,7 @@ struct ErrorPoint {
   std::int64_t block = 0;     ///< 1-based line that generated the surface here; 0: unknown
   std::int64_t tool = 0;      ///< 0: unknown
   bool valid = true;          ///< the model holds here; figures are of valid points
+  double tool_deflection_um = 0, part_deflection_um = 0;  ///< of deflection_um; a rigid workpiece has none of it
 };
 
 /// A row of spindle_load.csv: the heaviest turn of the spindle in a line, for cutting alone.
@@ -104,7 +105,8 @@ struct PredictResult {
   double force_max_N = 0;               ///< largest lateral force
   double chips_mm3 = 0, stock_mm3 = 0;  ///< removed volume, from the chips and from the stock
   ErrorFigures form_error_um{}, deflection_um{}, contour_um{};
-  double unseen_mm2 = 0;  ///< area of the nominal surface without a point
+  ErrorFigures tool_deflection_um{}, part_deflection_um{};  ///< of deflection_um
+  double unseen_mm2 = 0;                                    ///< area of the nominal surface without a point
   std::optional<TraceComparison> trace{};
   std::vector<ForceRow> forces{};
   std::vector<ErrorPoint> form_error{};

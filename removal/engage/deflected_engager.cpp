@@ -95,12 +95,13 @@ void DeflectedEngager::Impl::cut(std::size_t t, std::size_t k, const StampDeflec
   if (tile.cover.all_air()) return;
   tile.cover.allow_axial(max_axial_mm);
   if (tile_distance_mm(arena.index(t), voxel, envelope.shape, stamp.pose.tip_mm) > band + deflection.largest_mm) return;
-  if (tile.cut &&
+  const bool ends = std::isfinite(deflections->edges_end_mm);
+  if (tile.cut && !ends &&
       !tile.cover.changeable_after(tile.last_tip_mm, tile.last_deflection_mm, stamp.pose.tip_mm, deflection.largest_mm))
     return;
   const CarveStamp at{stamp.pose.tip_mm, first_id + static_cast<std::int32_t>(from + k)};
   tile.changed |=
-      deflection.largest_mm > 0
+      deflection.largest_mm > 0 || ends
           ? carve_deflected(arena[t], tile.cover, arena.index(t), voxel, band, envelope, at, *deflections, deflection)
           : carve(arena[t], tile.cover, arena.index(t), voxel, band, envelope.shape, at);
   tile.cut = true;

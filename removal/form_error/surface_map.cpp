@@ -214,6 +214,7 @@ class UprightCloseStamps {
   }
   void lower(SurfacePoint& p, std::size_t k) const {
     if (distance_[k] > reach_mm_[k]) return;
+    if (p.place_mm.z() - stamps_[k].envelope.pose().tip_mm.z() > deflections_.edges_end_mm) return;
     const double h = stamps_[k].envelope.height_mm(p.place_mm, p.normal, p.error_mm);
     if (h >= p.error_mm) return;
     p.error_mm = h;
@@ -282,6 +283,7 @@ class UprightCloseStamps {
     const auto k = static_cast<std::size_t>(stamp);
     const SurfacePoint& p = points[point];
     const DeflectedEnvelope& deflected = stamps_[k].envelope;
+    if (p.place_mm.z() - deflected.pose().tip_mm.z() > deflections_.edges_end_mm) return;
     queue_.add({point, k}, (p.place_mm - deflected.pose().tip_mm).cast<float>(), p.normal.cast<float>(), p.error_mm,
                deflected.deflection());
   }

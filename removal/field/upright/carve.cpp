@@ -54,6 +54,32 @@ bool cut_lines(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, Li
   return any;
 }
 
+/// The same below a height. What a column remembers may have been cut by an edge that ended lower: all are tried.
+template <class Cut>
+bool cut_lines_below(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, LineCut line,
+                     const CarveStamp& stamp, double deflection_mm, double end_mm, Cut cut) {
+  const float reach = line.flat + line.corner + line.band - line.shrink + static_cast<float>(deflection_mm);
+  const int end = std::clamp(static_cast<int>(std::floor(end_mm / voxel)) - t[2] * Tile::kCore + 1, 0, Tile::kSide);
+  std::array<float, ColumnCover::kLine> changeable;
+  changeable.fill(1.0f);
+  line.changeable = changeable.data();
+  std::array<std::int16_t, Tile::kSide> top;
+  line.top = top.data();
+  bool any = false;
+  for (int i = 0; i < Tile::kSide; ++i) {
+    line.dx = static_cast<float>((t[0] * Tile::kCore + i) * voxel - stamp.tip_mm.x());
+    if (std::abs(line.dx) > reach) continue;
+    for (std::size_t j = 0; j < top.size(); ++j) top[j] = std::min(cover.tops(i)[j], static_cast<std::int16_t>(end));
+    line.distance = tile.distance.data() + Tile::offset(i, 0, 0);
+    line.stamp = tile.stamp.data() + Tile::offset(i, 0, 0);
+    const LineResult result = cut(line);
+    for (int j = 0; j < Tile::kSide; ++j)
+      if (result.tried >> j & 1u) cover.cut(tile, i, j, stamp.tip_mm, deflection_mm, (result.changed >> j & 1u) != 0);
+    any |= result.changed != 0;
+  }
+  return any;
+}
+
 }  // namespace
 
 bool carve(Tile& tile, ColumnCover& cover, const Index3& t, double voxel, double band, const CutterShape& shape,
@@ -79,6 +105,11 @@ bool carve_deflected(Tile& tile, ColumnCover& cover, const Index3& t, double vox
   const auto cut = kernels().cut_line_deflected;
   LineCut straight = line_cut(t, voxel, band, envelope.shape, {stamp.tip_mm, stamp.id});
   straight.lowest = first_reached(stamp.tip_mm.z() - band - deflection.axial_mm, t[2] * Tile::kCore * voxel, voxel);
+  if (std::isfinite(deflections.edges_end_mm)) {
+    const double end = stamp.tip_mm.z() + deflections.edges_end_mm;
+    return cut_lines_below(tile, cover, t, voxel, straight, stamp, deflection.largest_mm, end,
+                           [&](const LineCut& line) { return cut(line, line_deflection); });
+  }
   return cut_lines(tile, cover, t, voxel, straight, stamp, deflection.largest_mm,
                    [&](const LineCut& line) { return cut(line, line_deflection); });
 }

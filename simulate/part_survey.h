@@ -1,0 +1,63 @@
+#pragma once
+// How the part yields under the tool along a path: linear elasticity on the cells of the stock as it stands at places
+// of the path.
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "deflection/part_compliance.h"
+#include "machine/job.h"
+#include "removal/form_error.h"
+#include "removal/stock.h"
+#include "removal/tool_path.h"
+
+namespace camber::simulate {
+
+/// Compliance of the part at places of a path. Places are kept by the stretch between two rapids and by the share of
+/// its stamps, so that they serve a compensated path as well, whose stretches are the same and hardly longer.
+struct PartSurvey {
+  struct Place {
+    std::size_t stretch = 0;  ///< of the run
+    double share = 0;         ///< of the stretch's stamps, 0 to 1
+    Eigen::MatrixXd mm_per_N;
+  };
+  struct Run {
+    std::size_t stretches = 0;
+    std::vector<double> height_mm;  ///< see deflection::PartCompliance
+    std::vector<Place> places;      ///< in the order of the path; none: the tool touches nothing there
+  };
+  std::vector<Run> runs;  ///< of the path; of runs that do not mill without places
+
+  double cell_mm = 0;
+  std::size_t cells = 0;   ///< at most
+  std::size_t solved = 0;  ///< places
+  double compliance_max_um_per_N = 0;
+  double seconds = 0;
+
+  /// Of a run of a path; empty where nothing is to be added there.
+  std::optional<deflection::PartCompliance> along(const removal::StampPath& path, std::size_t run) const;
+  /// The path has the stretches of the one that was surveyed.
+  bool fits(const removal::StampPath& path) const;
+};
+
+struct PartSurveyOptions {
+  double cell_mm = 1;
+  /// A place between two others is solved where the compliance there may be off the line between them by more than this
+  /// fraction of it ...
+  double tolerance = 0.03;
+  double negligible_mm_per_N = 2e-6;  ///< ... or by this
+  double apart_mm = 10;               ///< places are no farther apart on the path
+};
+
+/// Cells about as wide as the part is thin under its surface, as the job says, or as coarse as the number of cells
+/// asks.
+double part_cell_mm(const machine::Job& job, const removal::Stock& target,
+                    std::span<const removal::SurfacePoint> points);
+
+/// `blank`: the stock before the path, which is swept with undeflected tools. Throws InputError [workpiece-loose] where
+/// nothing is held, or a load has nothing elastic to act on.
+PartSurvey survey_part(const machine::Job& job, const removal::Stock& blank, const removal::StampPath& path,
+                       const PartSurveyOptions& options);
+
+}  // namespace camber::simulate

@@ -1,0 +1,267 @@
+// A wall of 2 x 30 x 60 mm cut level by level: how it yields, and the error that it is left with, against a plate whose
+// thickness is that of the moment (tests/support/cantilever_plate.h).
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "camber/diagnostics.h"
+#include "removal/form_error.h"
+#include "simulate/cut.h"
+#include "simulate/part_survey.h"
+#include "simulate/predict.h"
+#include "simulate/wall_thickness.h"
+#include "tests/support/cantilever_plate.h"
+#include "tests/support/cutting.h"
+
+namespace camber::testing {
+namespace {
+
+constexpr double kLength = 60, kHeight = 30, kThin = 2, kAllowance = 0.2, kLevel = 6, kRadius = 5;
+constexpr double kE_MPa = 68900, kNu = 0.33;
+constexpr double kHelix_rad = 30 * kPi / 180;
+
+/// The wall stands from y = 0 to y = 2, and as far as it is not finished to y = 2.2. One level, from the tip up, is
+/// finished along +x by a tool at y > 2, down milling.
+struct Scene {
+  explicit Scene(double tip_mm, double voxel_mm = 0.2) : tip(tip_mm), voxel(voxel_mm) {
+    job.machine.axis = {};
+    tool = make_tool(machine::ToolType::flat, 2 * kRadius, 2, 30);
+    tool.flute_length_mm = kLevel;
+    tool.youngs_modulus_MPa = 6e8;  // the wall alone yields
+    job.tools[1] = tool;
+    job.material = material;
+    job.workpiece.emplace();
+    job.workpiece->youngs_modulus_MPa = kE_MPa;
+    job.workpiece->poisson_ratio = kNu;
+    add_row(path.stamps, {-4, kThin + kRadius, tip}, {kLength + 4, kThin + kRadius, tip}, feed_mm);
+    path.runs = {{1, 0, path.stamps.size(), removal::RunKind::milling}};
+  }
+  removal::Stock blank() const {
+    const auto wall = [this](const Vec3& p) {
+      return std::min(removal::box_distance_mm(p, {0, 0, 0}, {kLength, kThin + kAllowance, tip + kLevel}),
+                      removal::box_distance_mm(p, {0, 0, 0}, {kLength, kThin, kHeight}));
+    };
+    return {wall, {0, 0, 0}, {kLength, kThin + kAllowance, kHeight}, voxel, 4};
+  }
+  /// The plate while the tool stands at x.
+  test::CantileverPlate plate(double x) const {
+    test::CantileverPlate::Description d;
+    d.length = kLength, d.height = kHeight;
+    d.youngs_modulus_MPa = kE_MPa, d.poisson_ratio = kNu;
+    d.z_breaks = {tip, tip + kLevel};
+    d.x_breaks = {x};
+    d.thickness = [this, x](double at_x, double z) {
+      const bool finished = z > tip + kLevel || (z > tip && at_x < x);
+      return finished ? kThin : kThin + kAllowance;
+    };
+    return test::CantileverPlate(d);
+  }
+
+  double tip, voxel;
+  static constexpr double feed_mm = 0.15;
+  machine::Job job;
+  machine::Tool tool;
+  machine::Material material{800, 250, 0, 6, 6, 0};
+  removal::StampPath path;
+};
+
+/// Of the wall, as the tool's y at a height over the tip answers a force along y at another one; um/N.
+double survey_um_per_N(const Scene& scene, const simulate::PartSurvey& survey, double x, double z_read,
+                       double z_force) {
+  const auto part = survey.along(scene.path, 0);
+  std::size_t stamp = 0;
+  while (scene.path.stamps[stamp].pose.tip_mm.x() < x) ++stamp;
+  const Eigen::MatrixXd c = part->at(stamp);
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(c.cols());
+  const auto w = deflection::height_weight(*part, z_force);
+  force[static_cast<Eigen::Index>(2 * w.lower) + 1] = w.of_lower();
+  force[static_cast<Eigen::Index>(2 * w.lower) + 3] = w.upper_fraction;
+  return 1000 * deflection::lateral_at(*part, z_read, c * force).y();
+}
+
+void expect_like_plate(double tip) {
+  const Scene scene(tip);
+  const simulate::PartSurvey survey = simulate::survey_part(scene.job, scene.blank(), scene.path, {.cell_mm = 2});
+  for (const double x : {3.0, 15.0, 30.0, 57.0}) {
+    const test::CantileverPlate plate = scene.plate(x);
+    for (const auto& [read, force] : {std::pair{1.0, 1.0}, {1.0, 5.0}, {5.0, 5.0}}) {
+      const double expected = 1000 * plate.deflection_mm(x, tip + read, {{x + 0.5, tip + force, 1}});
+      EXPECT_NEAR(survey_um_per_N(scene, survey, x, read, force), expected, 0.05 * expected)
+          << "x " << x << " z " << read << ", " << force;
+    }
+  }
+}
+
+TEST(ThinWallSlow, YieldsLikeAPlateAtTheTop) { expect_like_plate(24); }
+TEST(ThinWallSlow, YieldsLikeAPlateAtHalfHeight) { expect_like_plate(12); }
+
+TEST(ThinWallSlow, PlacesAreFewWhereTheComplianceChangesLittle) {
+  const Scene scene(24);
+  const auto coarse = simulate::survey_part(scene.job, scene.blank(), scene.path, {.cell_mm = 3, .tolerance = 0.2}),
+             fine = simulate::survey_part(scene.job, scene.blank(), scene.path, {.cell_mm = 3, .tolerance = 0.01});
+  EXPECT_LT(coarse.solved, fine.solved);
+  EXPECT_LT(coarse.solved, 25u);
+}
+
+/// The force along y on the tool at height z over the tip and its height, N/mm, while an edge passes the wall at z0:
+/// higher parts of the edge lag and are still in the cut, before they leave it at the wall. h = f sin(theta), theta the
+/// way to go to the wall; F = (K_t h + k_t) sin + (K_r h + k_r) cos.
+double force_N_per_mm(const Scene& s, double z, double z0, double radial_mm) {
+  const double theta = (z - z0) * std::tan(kHelix_rad) / kRadius;
+  if (theta < 0 || radial_mm <= 0 || theta > std::acos(1 - radial_mm / kRadius)) return 0;
+  const double h = s.feed_mm * std::sin(theta);
+  return (s.material.ktc_MPa * h + s.material.kte_N_per_mm) * std::sin(theta) +
+         (s.material.krc_MPa * h + s.material.kre_N_per_mm) * std::cos(theta);
+}
+
+/// Heights at which the wall's deflection is worked out, mm over the tip.
+constexpr std::size_t kHeights = 7;
+using AtHeights = std::array<double, kHeights>;
+
+double at_height(const AtHeights& values, double z) {
+  const auto below = std::min(static_cast<std::size_t>(z), kHeights - 2);
+  return values[below] + (z - static_cast<double>(below)) * (values[below + 1] - values[below]);
+}
+
+/// What the wall moves while an edge passes it at z0 over the tip, the tool at x, by plate theory; um by heights.
+/// `given_way_um`: by which the edges stand farther off.
+AtHeights plate_moves_um(const Scene& s, const test::CantileverPlate& plate, double x, double z0,
+                         const AtHeights& given_way_um) {
+  constexpr double kStep = 0.1;
+  std::vector<test::CantileverPlate::Load> loads;
+  for (double z = kStep / 2; z < kLevel; z += kStep) {
+    const double ahead = kRadius * std::sin((z - z0) * std::tan(kHelix_rad) / kRadius);
+    const double force = kStep * force_N_per_mm(s, z, z0, kAllowance - at_height(given_way_um, z) / 1000);
+    if (force > 0) loads.push_back({x + ahead, s.tip + z, force});
+  }
+  AtHeights out{};
+  for (std::size_t i = 0; i < kHeights; ++i)
+    out[i] = 1000 * plate.deflection_mm(x, s.tip + static_cast<double>(i), loads);
+  return out;
+}
+
+double rigid_error_um(const Scene& s, const test::CantileverPlate& plate, double x, double z0) {
+  return at_height(plate_moves_um(s, plate, x, z0, {}), z0);
+}
+
+/// In static coupling the wall has given way until it bears the force of what is left: at each instant for itself, as
+/// the tooth before had done the same at the same turn. In a cut that goes on, feed and chip stay; where the edge
+/// enters does not.
+double static_error_um(const Scene& s, const test::CantileverPlate& plate, double x, double z0) {
+  AtHeights moved{};
+  for (int round = 0; round < 40; ++round) {
+    const AtHeights next = plate_moves_um(s, plate, x, z0, moved);
+    for (std::size_t i = 0; i < kHeights; ++i) moved[i] += 0.4 * (next[i] - moved[i]);
+  }
+  return at_height(moved, z0);
+}
+
+struct CutWall {
+  std::map<int, double> total_um, part_um;  ///< by whole millimetres over the tip, near x
+  double chips_of_stock = 0;
+  std::size_t unsettled = 0;
+};
+
+CutWall cut_wall(const Scene& s, machine::Coupling coupling, double x) {
+  const auto survey = simulate::survey_part(s.job, s.blank(), s.path, {.cell_mm = 2});
+  const auto part = survey.along(s.path, 0);
+  removal::Stock stock = s.blank(), target(stock);
+  simulate::sweep(target, s.tool, s.path.stamps, 0, 0);
+  removal::CutterPlaces places;
+  places.add(0, removal::shape_of(s.tool), s.path.stamps);
+  removal::SurfaceMap map(target, places, stock), of_tool(map);
+  simulate::CutOptions options;
+  options.coupling = coupling;
+  options.envelope_step_mm = 0.1;
+  options.part = &*part;
+  options.surface = &map, options.tool_surface = &of_tool;
+  const auto result = simulate::cut(stock, s.tool, s.material, s.path.stamps, {}, 0, options);
+  const auto errors = of_tool.take_errors_mm();
+  CutWall out;
+  out.chips_of_stock = result.chip_mm3 / result.stock_mm3, out.unsettled = result.unsettled;
+  std::map<int, double> area;
+  const auto points = map.take();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto& p = points[i];
+    const double z = p.place_mm.z() - s.tip, at = std::round(z);
+    if (std::abs(p.place_mm.x() - x) > 1 || std::abs(p.normal.y()) < 0.99 || std::abs(z - at) > 0.25) continue;
+    area[static_cast<int>(at)] += p.area_mm2;
+    out.total_um[static_cast<int>(at)] += 1000 * p.error_mm * p.area_mm2;
+    out.part_um[static_cast<int>(at)] += 1000 * (p.error_mm - static_cast<double>(errors[i])) * p.area_mm2;
+  }
+  for (auto& [z, sum] : out.total_um) sum /= area[z];
+  for (auto& [z, sum] : out.part_um) sum /= area[z];
+  return out;
+}
+
+TEST(ThinWallSlow, RigidCouplingLeavesWhatThePlateYields) {
+  for (const double tip : {24.0, 12.0}) {
+    const Scene scene(tip);
+    constexpr double kAt = 30;
+    const CutWall cut = cut_wall(scene, machine::Coupling::rigid, kAt);
+    const test::CantileverPlate plate = scene.plate(kAt);
+    for (const int z : {1, 2, 3}) {
+      const double expected = rigid_error_um(scene, plate, kAt, z);
+      EXPECT_NEAR(cut.total_um.at(z), expected, 0.05 * expected) << tip << " + " << z;
+      EXPECT_NEAR(cut.part_um.at(z), cut.total_um.at(z), 0.02 * expected);
+    }
+  }
+}
+
+TEST(ThinWallSlow, StaticCouplingLeavesThePlatesEquilibrium) {
+  const Scene scene(24);
+  constexpr double kAt = 30;
+  const CutWall cut = cut_wall(scene, machine::Coupling::static_, kAt);
+  EXPECT_EQ(cut.unsettled, 0u);
+  EXPECT_NEAR(cut.chips_of_stock, 1, 0.03);
+  const test::CantileverPlate plate = scene.plate(kAt);
+  for (const int z : {1, 2, 3}) {
+    const double expected = static_error_um(scene, plate, kAt, z);
+    EXPECT_NEAR(cut.total_um.at(z), expected, 0.05 * expected) << z;
+  }
+}
+
+TEST(ThinWall, ThicknessIsFoundUnderTheSurface) {
+  const Scene scene(24);
+  removal::Stock stock = scene.blank();
+  simulate::sweep(stock, scene.tool, scene.path.stamps, 0, 0);
+  EXPECT_NEAR(simulate::thickness_mm(stock, {30, kThin, 27}, Vec3::UnitY(), 20), kThin, 0.1);
+  EXPECT_EQ(simulate::thickness_mm(stock, {60, 1, 10}, Vec3::UnitX(), 20), 20);
+  const simulate::Thickness wall{kThin, {30, kThin, 27}, Vec3::UnitY()};
+  EXPECT_NEAR(simulate::reach_mm(stock, wall, 0, 100).value_or(0), 27, 1);
+}
+
+TEST(ThinWall, NothingHeldIsAnError) {
+  Scene scene(24);
+  scene.job.workpiece->fixed_bottom = false;
+  scene.job.workpiece->fixed_boxes = {{{100, 0, 0}, {110, 2, 2}}};
+  scene.job.workpiece->place.location = {"job.toml", 12, 9};
+  try {
+    simulate::survey_part(scene.job, scene.blank(), scene.path, {.cell_mm = 3});
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_STREQ(
+        e.what(),
+        "job.toml:12:9: error: fixed holds nothing of the part's material; a part that is held in the stock was "
+        "expected [workpiece-loose]");
+  }
+}
+
+TEST(ThinWall, NothingUnderTheToolIsAnError) {
+  Scene scene(24);
+  for (removal::Stamp& s : scene.path.stamps) s.pose.tip_mm.y() += 50;
+  try {
+    simulate::survey_part(scene.job, scene.blank(), scene.path, {.cell_mm = 3});
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.diagnostics().front().check, "workpiece-loose");
+    EXPECT_EQ(e.diagnostics().front().message,
+              "nothing that is held of the part is under the tool anywhere; a part that it cuts was expected");
+  }
+}
+
+}  // namespace
+}  // namespace camber::testing
