@@ -85,8 +85,8 @@ def program(row, group=None):
         own, (first, last), _ = GROUPS[group]
         change = next(i for i, line in enumerate(lines) if "T%dM6" % own in line)
         if group in SHORTENED_IN:
-            lines[first - 2:last] = [shortened(line, group) for line in lines[first - 2:last]]
-        keep = set(range(0, 11)) | set(range(change, change + 5)) | set(range(first - 2, last))
+            lines[first - 3:last] = [shortened(line, group) for line in lines[first - 3:last]]
+        keep = set(range(0, 11)) | set(range(change, change + 5)) | set(range(first - 3, last))
         lines = [line if i in keep or "M30" in line or line.startswith("%") else "" for i, line in enumerate(lines)]
     return "\n".join(lines)
 
@@ -128,6 +128,7 @@ flutes = 2
 helix_deg = 30
 overhang_mm = {stick_out:.3f}
 youngs_modulus_GPa = 600
+runout_um = 5              # of a collet: one tooth finishes, its feed marks are those of a whole turn
 {overrides.get("tool", "")}
 [material]
 {overrides.get("material", 'preset = "6061"')}
