@@ -83,7 +83,7 @@ Solution solve_linear(const MatrixXd& a, const VectorXd& b, double sigma, const 
 
 using Sizes = std::vector<std::optional<PredictedSize>>;
 
-constexpr double kNoBending_mm = 0.0005;
+constexpr double kNoBending_mm = 0.0001;
 
 bool of_motion(UnknownKind kind) { return kind == UnknownKind::gain || kind == UnknownKind::gain_ratio; }
 
