@@ -8,7 +8,7 @@
 namespace camber::inspect {
 namespace {
 
-constexpr double kOtherSource = 0.25, kSmallTool = 1.0, kSmallTool_mm = 4;
+constexpr double kOtherSource = 0.25, kSmallTool = 1.5, kSmallTool_mm = 4;
 constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kGain = 0.15, kDiameter_mm = 0.005;
 
 }  // namespace
