@@ -15,6 +15,8 @@
 namespace camber::machine {
 namespace {
 
+constexpr std::string_view kTypical = "[typical-value]";
+
 /// The file's tables; null where it cannot be read, which its reader has said.
 std::unique_ptr<TomlFile> file_of(const std::string& path) {
   std::error_code ec;
@@ -93,16 +95,23 @@ std::vector<std::string> assumptions(const Job& job) {
     if (const auto at = keys.find(fmt::format("tool.{}", number)); at != keys.end())
       out.push_back(fmt::format("T{} {}", number, fmt::join(at->second, ", ")));
   for (const auto& [number, tool] : job.tools)
-    if (!tool.typical.empty())
-      out.push_back(fmt::format("T{} {} [typical-value]", number, fmt::join(tool.typical, ", ")));
+    if (!tool.typical.empty()) out.push_back(fmt::format("T{} {} {}", number, fmt::join(tool.typical, ", "), kTypical));
   if (const auto at = keys.find("stock"); at != keys.end())
     out.push_back(fmt::format("stock {}", fmt::join(at->second, ", ")));
   return out;
 }
 
 std::string assumptions_text(const std::vector<std::string>& assumptions) {
-  if (assumptions.empty()) return {};
-  return fmt::format("warning: assumed, not given: {} [assumed]\n", fmt::join(assumptions, "; "));
+  std::vector<std::string> assumed;
+  std::string notes;
+  for (const std::string& a : assumptions) {
+    if (a.ends_with(kTypical))
+      notes += fmt::format("note: {}\n", a);
+    else
+      assumed.push_back(a);
+  }
+  if (assumed.empty()) return notes;
+  return fmt::format("warning: assumed, not given: {} [assumed]\n", fmt::join(assumed, "; ")) + notes;
 }
 
 std::string with_assumptions(std::string json, const std::vector<std::string>& assumptions) {

@@ -44,7 +44,8 @@ TEST(CliFeatures, PredictWritesThemEverywhere) {
   write_job(folder, kBore + "measured_mm = [9.99]\n");
   const auto run = run_camber(folder, "predict job.toml -o r");
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.out.find("root_stiffness_N_per_um = 20, flute_length_mm = 18 [typical-value]"), std::string::npos)
+  EXPECT_NE(run.out.find("note: T1 root_stiffness_N_per_um = 20, flute_length_mm = 18 [typical-value]\n"),
+            std::string::npos)
       << run.out;
   EXPECT_NE(run.out.find("\nbore            "), std::string::npos) << run.out;
   const json f = json::parse(tests::file_text(folder / "r/summary.json"))["features"][0];
