@@ -137,10 +137,10 @@ runout_um = 5              # of a collet: one tooth finishes, its feed marks are
 box_mm = [[{lo[0]:.2f}, {lo[1]:.2f}, -8], [{hi[0]:.2f}, {hi[1]:.2f}, 0]]
 {allowance}
 [simulation]
-voxel_mm = {overrides.get("voxel", 0.1)}
+voxel_mm = 0.15
 collisions = "off"
-rotation_step_deg = 2
-envelope_step_mm = 0.08
+rotation_step_deg = 4
+envelope_step_mm = 0.12
 """ + "\n".join(feature_text(f, tool, values, plate, group) for f in features) + "\n"
 
 
