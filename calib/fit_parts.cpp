@@ -112,6 +112,10 @@ class Fit {
     choose(kNoise_mm);
     do {
       iterate();
+      if (far_from_slopes()) {  // they were those of another place
+        find_slopes();
+        iterate();
+      }
     } while (drop_undetermined());
     return finish();
   }
@@ -171,8 +175,18 @@ class Fit {
     return std::ranges::any_of(fitted_, [&](std::size_t i) { return rows_[i].job == j; });
   }
 
+  /// Whether a scale has moved by more than the step of its slope.
+  bool far_from_slopes() const {
+    for (std::size_t k = 0; k < unknowns_.size(); ++k)
+      if (!unknowns_[k].adds() &&
+          std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) > kStep)
+        return true;
+    return false;
+  }
+
   /// Slopes of all sizes by the unknowns of the model.
   void find_slopes() {
+    slopes_at_ = x_;
     slope_.assign(jobs_.size(), {});
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
       show("slopes", j, jobs_.size());
@@ -622,6 +636,7 @@ class Fit {
   const std::vector<PartsRow> rows_;
   const std::vector<PartsUnknown> unknowns_;
   VectorXd x_;
+  VectorXd slopes_at_;  ///< where slope_ was found
   std::vector<bool> active_;
   std::vector<std::size_t> fitted_;  ///< rows
   std::vector<Sizes> sizes_;         ///< of every job, at x_

@@ -153,7 +153,7 @@ TEST(Completion, OffersCommandsOptionsAndValues) {
   ASSERT_EQ(script.status, 0);
   folder.write("completion", script.out);
   folder.write("finish.nc", "");
-  EXPECT_EQ(completed(folder, "camber fit"), "fit-feed fit-force fit-modes\n");
+  EXPECT_EQ(completed(folder, "camber fit"), "fit-feed fit-parts fit-force fit-modes\n");
   EXPECT_EQ(completed(folder, "camber predict --forces"), "--forces-at\n");
   EXPECT_EQ(completed(folder, "camber -q compensate --rep"), "--report\n");
   EXPECT_EQ(completed(folder, "camber check finish.nc --units \"\""), "mm inch\n");
@@ -176,7 +176,7 @@ TEST(Completion, OfFishOffersTheSame) {
   if (std::system("fish --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "fish is not installed";
   const TempFolder folder;
   folder.write("completion", run_camber(folder, "completion fish").out);
-  EXPECT_EQ(offered_by_fish(folder, "camber fit"), "fit-feed fit-force fit-modes ");
+  EXPECT_EQ(offered_by_fish(folder, "camber fit"), "fit-feed fit-force fit-modes fit-parts ");
   EXPECT_EQ(offered_by_fish(folder, "camber predict --forces"), "--forces-at ");
   EXPECT_EQ(offered_by_fish(folder, "camber check finish.nc --units "), "inch mm ");
   EXPECT_EQ(offered_by_fish(folder, "camber completion z"), "zsh ");
@@ -198,7 +198,7 @@ TEST(Completion, OfZshOffersTheSame) {
   if (std::system("zsh --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "zsh is not installed";
   const TempFolder folder;
   folder.write("completion", run_camber(folder, "completion zsh").out);
-  EXPECT_EQ(offered_by_zsh(folder, "camber fit"), "fit-feed fit-force fit-modes ");
+  EXPECT_EQ(offered_by_zsh(folder, "camber fit"), "fit-feed fit-parts fit-force fit-modes ");
   EXPECT_EQ(offered_by_zsh(folder, "camber predict --forces"), "--forces-at ");
   EXPECT_EQ(offered_by_zsh(folder, "camber -q compensate --rep"), "--report ");
   EXPECT_EQ(offered_by_zsh(folder, "camber check finish.nc --units \"\""), "mm inch ");
