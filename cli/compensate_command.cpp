@@ -117,7 +117,8 @@ int compensate_program(const machine::Job& given, Diagnostics diagnostics, const
   emitted = written;
   const auto features_before = report::features_of(job, result.surface_before);
   const auto features_after = report::features_of(job, result.surface_after);
-  if (written && !features_after.empty())
+  std::error_code ec;
+  if (written && !features_after.empty() && std::filesystem::is_regular_file(arguments.output, ec))  // not a pipe
     try_to_write([&] { report::write_features_csv(features_path(arguments.output), features_after); }, failed);
   json = machine::with_assumptions(
       report::with_features(report::compensate_json(result, job.compensation, compute_s),

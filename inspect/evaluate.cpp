@@ -150,7 +150,9 @@ std::vector<FeatureResult> evaluate(const std::vector<Feature>& features,
   for (std::size_t i = 0; i < features.size(); ++i)
     evaluate_alone(all.emplace_back(Evaluation{features[i], surface, voxel_mm, out[i]}));
   const auto named = [&](const std::string& name) -> const Evaluation& {
-    return *std::ranges::find(all, name, [](const Evaluation& e) { return e.feature.name; });
+    const auto at = std::ranges::find(all, name, [](const Evaluation& e) { return e.feature.name; });
+    assert(at != all.end());
+    return *at;
   };
   for (Evaluation& e : all)
     if (!e.feature.of[0].empty()) evaluate_distance_of(e, named(e.feature.of[0]), named(e.feature.of[1]));
