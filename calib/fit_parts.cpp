@@ -85,6 +85,27 @@ using Sizes = std::vector<std::optional<PredictedSize>>;
 
 constexpr double kNoBending_mm = 0.0001;
 
+/// Sizes change about as exp(p x): lag with the gain's inverse square, bending with the force and the root's
+/// compliance.
+double exponent_of(UnknownKind kind) {
+  switch (kind) {
+    case UnknownKind::gain:
+      return -2;
+    case UnknownKind::root:
+    case UnknownKind::root_rotation:
+      return -1;
+    default:
+      return 1;
+  }
+}
+
+/// Slope at x of a size that changes by `change` over the step.
+double slope_from(double change, UnknownKind kind) {
+  if (kind == UnknownKind::gain_ratio) return change / kStep;
+  const double p = exponent_of(kind);
+  return p * change / std::expm1(p * kStep);
+}
+
 bool of_motion(UnknownKind kind) { return kind == UnknownKind::gain || kind == UnknownKind::gain_ratio; }
 
 class Fit {
@@ -212,7 +233,8 @@ class Fit {
       const Sizes there = predict_coarsely(j, x, motion);
       for (std::size_t f = 0; f < there.size(); ++f)
         if (there[f] && (*here)[f])
-          slope_[j](static_cast<Eigen::Index>(f), column) = (there[f]->size_mm - (*here)[f]->size_mm) / kStep;
+          slope_[j](static_cast<Eigen::Index>(f), column) =
+              slope_from(there[f]->size_mm - (*here)[f]->size_mm, unknowns_[k].kind);
     }
   }
 

@@ -21,7 +21,8 @@ class Reference(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
-        for room in ("machine", "calib", "feedmodel", "plan", "report", "api", "cli", "docs/reference"):
+        for room in ("machine", "calib", "feedmodel", "inspect", "plan", "report", "api", "cli",
+                     "docs/reference"):
             shutil.copytree(SOURCE / room, self.root / room, ignore=shutil.ignore_patterns("web"))
 
     def edit(self, path, before, after):
