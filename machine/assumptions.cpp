@@ -15,7 +15,7 @@
 namespace camber::machine {
 namespace {
 
-constexpr std::string_view kTypical = "[typical-value]";
+constexpr std::string_view kTypicalMark = "[typical-value]";
 
 /// The file's tables; null where it cannot be read, which its reader has said.
 std::unique_ptr<TomlFile> file_of(const std::string& path) {
@@ -95,7 +95,7 @@ std::vector<std::string> assumptions(const Job& job) {
     if (const auto at = keys.find(fmt::format("tool.{}", number)); at != keys.end())
       out.push_back(fmt::format("T{} {}", number, fmt::join(at->second, ", ")));
   for (const auto& [number, tool] : job.tools)
-    if (!tool.typical.empty()) out.push_back(fmt::format("T{} {} {}", number, fmt::join(tool.typical, ", "), kTypical));
+    if (!tool.typical.empty()) out.push_back(fmt::format("T{} {} {}", number, fmt::join(tool.typical, ", "), kTypicalMark));
   if (const auto at = keys.find("stock"); at != keys.end())
     out.push_back(fmt::format("stock {}", fmt::join(at->second, ", ")));
   return out;
@@ -105,7 +105,7 @@ std::string assumptions_text(const std::vector<std::string>& assumptions) {
   std::vector<std::string> assumed;
   std::string notes;
   for (const std::string& a : assumptions) {
-    if (a.ends_with(kTypical))
+    if (a.ends_with(kTypicalMark))
       notes += fmt::format("note: {}\n", a);
     else
       assumed.push_back(a);
