@@ -28,6 +28,7 @@ using Eigen::VectorXd;
 using machine::Job;
 
 constexpr double kStep = 0.2;            // of a logarithm, for slopes: large against the noise of a grid
+constexpr double kLeastStep = 0.05;      // of a logarithm, that corrects slopes: less is the noise of a grid
 constexpr double kLongest = 0.7;         // of a logarithm, a round
 constexpr double kDetermined = 0.5;      // greatest standard error of a logarithm
 constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day
@@ -402,7 +403,7 @@ class Fit {
       for (std::size_t f = 0; f < there.size(); ++f) {
         if (!there[f] || !sizes_[j][f]) continue;  // keeps its last prediction
         auto row = slope_[j].row(static_cast<Eigen::Index>(f));
-        if (own.squaredNorm() > 1e-8)
+        if (own.norm() > kLeastStep)
           row += (there[f]->size_mm - sizes_[j][f]->size_mm - row.dot(own)) / own.squaredNorm() * own.transpose();
         sizes_[j][f] = there[f];
       }

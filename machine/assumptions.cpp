@@ -95,7 +95,8 @@ std::vector<std::string> assumptions(const Job& job) {
     if (const auto at = keys.find(fmt::format("tool.{}", number)); at != keys.end())
       out.push_back(fmt::format("T{} {}", number, fmt::join(at->second, ", ")));
   for (const auto& [number, tool] : job.tools)
-    if (!tool.typical.empty()) out.push_back(fmt::format("T{} {} {}", number, fmt::join(tool.typical, ", "), kTypicalMark));
+    if (!tool.typical.empty())
+      out.push_back(fmt::format("T{} {} {}", number, fmt::join(tool.typical, ", "), kTypicalMark));
   if (const auto at = keys.find("stock"); at != keys.end())
     out.push_back(fmt::format("stock {}", fmt::join(at->second, ", ")));
   return out;
