@@ -190,7 +190,7 @@ struct Job {
   std::optional<AdaptSettings> adapt{};
   std::vector<Feature> features{};  ///< that predict and compensate evaluate
   std::optional<ModelError> model_error{};
-  std::vector<Mode> workpiece_modes{};  ///< of the work on its table; empty: it is rigid
+  std::vector<Mode> workpiece_modes{};   ///< of the work on its table; empty: it is rigid
   std::optional<Workpiece> workpiece{};  ///< not given: rigid
 };
 

@@ -61,11 +61,24 @@ TEST(ToolReader, ReadsMeasuredModes) {
 TEST(ToolReader, RefusesModesThatAreNone) {
   const std::string tool = "type = \"flat\"\ndiameter_mm = 10" + kRest;
   const auto messages = [&](const std::string& mode) { return read(tool + "[[tool.1.mode]]\n" + mode).messages; };
-  EXPECT_EQ(messages("direction = \"z\"\nfrequency_Hz = 900\ndamping_percent = 1\nstiffness_N_per_um = 2"), "");
-  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\nstiffness_N_per_um = 2"), "");
-  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\ndamping_percent = 0\nstiffness_N_per_um = 2"), "");
-  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\ndamping_percent = 1\nstiffness = 2"), "");
-  EXPECT_EQ(read(tool + "mode = 3").messages, "");
+  EXPECT_EQ(messages("direction = \"z\"\nfrequency_Hz = 900\ndamping_percent = 1\nstiffness_N_per_um = 2"),
+            "job.toml:9:13: error: direction is \"z\"; \"x\" or \"y\" was expected [value-choice]\n"
+            "    direction = \"z\"\n                ^");
+  EXPECT_EQ(
+      messages("direction = \"x\"\nfrequency_Hz = 900\nstiffness_N_per_um = 2"),
+      "job.toml:8:1: error: damping_percent is missing in [[mode]]; a number greater than zero and at most 100 was "
+      "expected [key-missing]\n    [[tool.1.mode]]\n    ^");
+  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\ndamping_percent = 0\nstiffness_N_per_um = 2"),
+            "job.toml:11:19: error: damping_percent is 0; a number greater than zero and at most 100 was expected "
+            "[value-range]\n    damping_percent = 0\n                      ^");
+  EXPECT_EQ(messages("direction = \"x\"\nfrequency_Hz = 900\ndamping_percent = 1\nstiffness = 2"),
+            "job.toml:8:1: error: stiffness_N_per_um is missing in [[mode]]; a number greater than zero was expected "
+            "[key-missing]\n    [[tool.1.mode]]\n    ^\n"
+            "job.toml:12:1: error: unknown key stiffness in [[mode]]; did you mean stiffness_N_per_um? [key-unknown]\n"
+            "    stiffness = 2\n    ^");
+  EXPECT_EQ(read(tool + "mode = 3").messages,
+            "job.toml:8:8: error: mode is a number; a list of tables [[mode]] was expected [value-type]\n"
+            "    mode = 3\n           ^");
 }
 
 TEST(ToolReader, ReadsATaperedBallWithEverythingAToolCanHave) {
