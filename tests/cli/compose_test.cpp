@@ -40,6 +40,8 @@ type = "ball"
 diameter_mm = 6.0
 flutes = 2
 overhang_mm = 50.0
+flute_length_mm = 50.0
+root_stiffness_N_per_um = inf
 [material]
 ktc_MPa = 2000.0
 krc_MPa = 700.0

@@ -36,6 +36,7 @@ type = "ball"
 diameter_mm = 6.0
 flutes = 2
 overhang_mm = 30.0
+root_stiffness_N_per_um = inf
 holder_mm = [[32, 32, 60]]
 [material]
 ktc_MPa = 2000.0
@@ -285,7 +286,7 @@ TEST(CompensateFiveAxes, ChangesCoordinatesAndNothingElse) {
     const std::string program = turning_rows(tip_control);
     write_job(folder, program);
     std::string job = tests::file_text(folder / "job.toml");
-    job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nhelix_deg = 30.0");
+    job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nflute_length_mm = 40.0\nhelix_deg = 30.0");
     job.replace(job.find("coupling = \"rigid\""), 18, "[compensation]\ntolerance_um = 0.5");
     folder.write("job.toml", job);
     const auto run = run_camber(folder, "compensate job.toml -o out.nc --json c.json");
@@ -365,7 +366,7 @@ TEST(CompensateFiveAxes, TiltedFramesAreCompensatedInTheirOwnCoordinates) {
     const std::string program = leaning_rows(frame);
     write_job(folder, program);
     std::string job = tests::file_text(folder / "job.toml");
-    job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nhelix_deg = 30.0");
+    job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nflute_length_mm = 40.0\nhelix_deg = 30.0");
     job.replace(job.find("coupling = \"rigid\""), 18, "[compensation]\ntolerance_um = 0.5\nmax_rounds = 1");
     folder.write("job.toml", job);
     const auto predicted = run_camber(folder, "predict job.toml -o result --json p.json");

@@ -56,6 +56,7 @@ TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
     EXPECT_FALSE(examples.empty()) << name;
     for (const std::string& example : examples) {
       EXPECT_EQ(example.rfind(name + " ", 0), 0u) << example;
+      if (name == "ui") continue;  // serves until it is interrupted: tests/ui
       const bool part = name == "resegment" && example.find("--part") != std::string::npos;
       const std::string from = folder / (name == "fit-force"   ? "03-force-fit"
                                          : name == "fit-parts" ? "23-measured-parts"

@@ -305,7 +305,7 @@ class Figures(unittest.TestCase):
                     with open(out / f"predicted{number}" / "form_error.csv", encoding="utf8") as file:
                         names = file.readline().strip().split(",")
                         self.assertEqual(len(result.form_error), sum(1 for _ in file))
-                    self.assertEqual(set(names) | {"model_error_um"}, set(result.form_error.columns))
+                    self.assertEqual(set(names) | {"model_error_um", "tool_deflection_um", "part_deflection_um"}, set(result.form_error.columns))
                     self.assertTrue(all(map(math.isnan, result.form_error.model_error_um)), "no trace")
 
     def test_compensate_of_two_jobs(self):

@@ -94,7 +94,7 @@ export class PartScene {
     this.scene.background = new Color('#f3f5f8').convertLinearToSRGB();
     this.renderer.outputColorSpace = 'srgb-linear';  // colours are given as they are shown
     this.run = 0;
-    this.cut = { value: new Vector4() };  // what lies beyond the plane is not drawn: x, y, z of its normal, and how far along it
+    this.cut = { value: new Vector4(0, 0, 0, 0) };  // what lies beyond the plane is not drawn: x, y, z of its normal, and how far along it
     this.camera = new OrthographicCamera();
     this.camera.up.set(0, 0, 1);
     // What is fixed to the part, and turns with it.
