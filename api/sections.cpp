@@ -8,6 +8,8 @@
 #include "api/commands/sections.h"
 #include "api/predict_result.h"
 #include "api/run.h"
+#include "machine/assumptions.h"
+#include "report/feature_results.h"
 #include "report/summary.h"
 
 namespace camber {
@@ -74,9 +76,12 @@ PredictResult v0::merge(const std::string& folder, const RunOptions& run_options
     out = api::result_of(job, merged.prepared, merged.prediction);
     if (!merged.doubt.empty()) out.doubts.push_back(merged.doubt);
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.json = api::with_sections(
-        report::predict_json(merged.prepared.setup.program, merged.prediction, compute_s, nullptr, out.doubts),
-        merged.figures);
+    out.json = machine::with_assumptions(
+        report::with_features(api::with_sections(report::predict_json(merged.prepared.setup.program, merged.prediction,
+                                                                      compute_s, nullptr, out.doubts),
+                                                 merged.figures),
+                              {{"features", report::features_of(job, merged.prediction.surface)}}),
+        machine::assumptions(job));
     of_job.append(found);
     out.diagnostics = of_job.all();
     api::write_prediction(job, merged.prepared, merged.prediction, request, out.json, found, failed);

@@ -18,8 +18,6 @@ struct FormErrorPoint {
   double error_um = 0;    ///< machined minus nominal surface along the normal; positive: excess material
   double contour_um = 0;  ///< of it, what servo lag and corner rounding do to the target program
   double deflection_um() const { return error_um - contour_um; }
-  /// Of deflection_um(), the part's; NaN: the part is rigid.
-  double part_um = std::numeric_limits<double>::quiet_NaN();
   bool part_yields() const { return part_um == part_um; }
   double tool_um() const { return part_yields() ? deflection_um() - part_um : deflection_um(); }
   double area_mm2 = 0;                                               ///< represented by the point
@@ -28,6 +26,8 @@ struct FormErrorPoint {
   std::uint32_t block = 0;  ///< 1-based line that generated the surface here; 0: unknown
   int tool = 0;             ///< whose stamp made it; 0: unknown
   bool valid = true;        ///< the model holds here
+  /// The part's share of deflection_um(); NaN: the part is rigid.
+  double part_um = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Points made as they are asked for: there are millions of them.

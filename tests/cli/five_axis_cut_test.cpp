@@ -71,7 +71,7 @@ TEST(PredictFiveAxes, WritesJointsPosesAndAxialForces) {
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   const std::string forces = tests::file_text(folder / "result/forces.csv");
-  EXPECT_NE(forces.find(",specific_energy_MPa,valid,f_axial_max_N"), std::string::npos);
+  EXPECT_NE(forces.find(",specific_energy_MPa,valid,chatter_margin,chatter_Hz,f_axial_max_N"), std::string::npos);
   const auto feed = columns_of(tests::file_text(folder / "result/feed.csv"));
   const auto &a = feed.at("a_deg"), &c = feed.at("c_deg"), &x = feed.at("axis_x"), &tip = feed.at("tip_z_mm");
   EXPECT_NEAR(a.back(), 20, 1e-3);

@@ -60,6 +60,7 @@ TEST(Init, WritesWhatProgramAndTablesTell) {
       run.out,
       "warning: assumed, not given: material C45 (preset, krc_ratio, within 40 %); T1 flutes, helix_deg, overhang_mm, "
       "root_stiffness_N_per_um; T2 helix_deg, overhang_mm, root_stiffness_N_per_um; stock box_mm [assumed]\n"
+      "note: T1 flute_length_mm = 18 [typical-value]\nnote: T2 flute_length_mm = 24 [typical-value]\n"
       "job.toml: 2 tools; what is assumed is marked \"typical\" or CHECK in it\n");
   const std::string job = tests::file_text(folder / "job.toml");
   EXPECT_EQ(job.substr(0, job.find("\n[material]")), kExpected);

@@ -40,7 +40,9 @@ TEST(ProgramsInTurn, ArePredictedOnOneBlank) {
   EXPECT_NEAR(r["machine_time_s"].get<double>(),
               r["programs"][0]["machine_time_s"].get<double>() + r["programs"][1]["machine_time_s"].get<double>(),
               1e-9);
-  EXPECT_EQ(r["assumed"], (nlohmann::json{"machine preset:vmc-40, typical values of its class", "stock box_mm"}));
+  EXPECT_EQ(r["assumed"],
+            (nlohmann::json{"machine preset:vmc-40, typical values of its class",
+                            "T1 root_stiffness_N_per_um = 20, flute_length_mm = 18 [typical-value]", "stock box_mm"}));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/2-second/report.html"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/summary.json"));
 }

@@ -68,6 +68,8 @@ void expect_same(const std::map<std::string, std::string>& a, const std::map<std
   for (const auto& [name, text] : a) {
     EXPECT_FALSE(text.empty()) << name;
     EXPECT_TRUE(text == b.at(name)) << what << ": " << name << " differs";
+    if (name == "summary.json" && text != b.at(name))
+      ADD_FAILURE() << nlohmann::json::diff(nlohmann::json::parse(text), nlohmann::json::parse(b.at(name))).dump();
   }
 }
 

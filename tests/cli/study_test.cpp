@@ -26,7 +26,8 @@ const std::string kSlot =
     "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X-6 Y0 Z5\nG0 Z-2\nG1 X4 F300 (slot)\nG0 Z5\nM30\n";
 const std::string kJob =
     "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
-    "overhang_mm = 15.0\n[material]\nktc_MPa = 800.0\nkrc_MPa = 250.0\nkte_N_per_mm = 5.0\nkre_N_per_mm = 5.0\n"
+    "overhang_mm = 15.0\nshank_diameter_mm = 4.0\nroot_stiffness_N_per_um = inf\n[material]\nktc_MPa = 800.0\nkrc_MPa "
+    "= 250.0\nkte_N_per_mm = 5.0\nkre_N_per_mm = 5.0\n"
     "[stock]\nbox_mm = [[0, -3, -3], [4, 3, 0]]\n[simulation]\nvoxel_mm = 0.4\ncoupling = \"rigid\"\n";
 const std::string kStudy = "job = \"../job.toml\"\n[grid]\ntool.1.overhang_mm = [15, 25]\nfeed_percent = [100, 200]\n";
 

@@ -29,7 +29,8 @@ void write_job(const TempFolder& folder, const std::string& operations, const st
                "[axis.y]\n[axis.z]\n");
   folder.write("job.toml",
                "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + operations +
-                   "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\noverhang_mm = 30.0\nhelix_deg = 30\n"
+                   "[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\noverhang_mm = 30.0\nflute_length_mm = "
+                   "30.0\nroot_stiffness_N_per_um = inf\nhelix_deg = 30\n"
                    "[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\nbox_mm = [[0, -0.5, -2], [10, 2, 0]]\n" +
                    part + "[simulation]\nvoxel_mm = 0.2\ncoupling = \"rigid\"\n[compensation]\ntolerance_um = 20.0\n" +
                    "max_rounds = 3\n" + compensation);

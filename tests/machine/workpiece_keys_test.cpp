@@ -79,8 +79,8 @@ TEST(WorkpieceKeys, WrittenAsTheyAreRead) {
       "youngs_modulus_GPa = 110.0\npoisson_ratio = 0.3\nfixed = \"jaws.stl\"\nfixture_stiffness_N_per_um = 50\n"
       "cell_mm = 2.0\n");
   EXPECT_EQ(r.messages, "");
-  EXPECT_NE(r.written.find("[workpiece]\nyoungs_modulus_GPa = 110.0\nfixed = \"jaws.stl\"\npoisson_ratio = 0.3\n"
-                           "fixture_stiffness_N_per_um = 50.0\ncell_mm = 2.0\n"),
+  EXPECT_NE(r.written.find("[workpiece]\nyoungs_modulus_GPa = 110\nfixed = \"jaws.stl\"\npoisson_ratio = 0.3\n"
+                           "fixture_stiffness_N_per_um = 50\ncell_mm = 2\n"),
             std::string::npos)
       << r.written;
 }

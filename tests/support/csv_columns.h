@@ -20,7 +20,9 @@ inline std::map<std::string, std::vector<double>> columns_of(const std::string& 
     std::istringstream row(line);
     for (const auto& name : names) {
       std::getline(row, cell, ',');
-      out[name].push_back(cell.empty() ? std::nan("") : std::stod(cell));
+      char* end = nullptr;
+      const double value = std::strtod(cell.c_str(), &end);
+      out[name].push_back(end == cell.c_str() ? std::nan("") : value);  // words too
     }
   }
   return out;
