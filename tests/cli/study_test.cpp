@@ -26,7 +26,7 @@ const std::string kSlot =
     "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X-6 Y0 Z5\nG0 Z-2\nG1 X4 F300 (slot)\nG0 Z5\nM30\n";
 const std::string kJob =
     "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
-    "overhang_mm = 15.0\nshank_diameter_mm = 4.0\nroot_stiffness_N_per_um = inf\n[material]\nktc_MPa = 800.0\nkrc_MPa "
+    "overhang_mm = 15.0\n[material]\nktc_MPa = 800.0\nkrc_MPa "
     "= 250.0\nkte_N_per_mm = 5.0\nkre_N_per_mm = 5.0\n"
     "[stock]\nbox_mm = [[0, -3, -3], [4, 3, 0]]\n[simulation]\nvoxel_mm = 0.4\ncoupling = \"rigid\"\n";
 const std::string kStudy = "job = \"../job.toml\"\n[grid]\ntool.1.overhang_mm = [15, 25]\nfeed_percent = [100, 200]\n";
@@ -57,6 +57,9 @@ nlohmann::json table_in(const TempFolder& folder) {
 TEST(StudyCommand, ComputesEveryCaseOnce) {
   const TempFolder folder;
   write_all(folder);
+  std::string clamped = kJob;  // fluted up to a rigid clamp
+  clamped.insert(clamped.find("[material]"), "shank_diameter_mm = 4.0\nroot_stiffness_N_per_um = inf\n");
+  folder.write("job.toml", clamped);
   const CamberRun run = run_camber(folder, "study s/study.toml -o out --json copy.json");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");

@@ -207,7 +207,8 @@ const CHECKS = {
     await page.getByLabel('Run all').selectOption('time');
     await page.waitForFunction(() => document.documentElement.dataset.runs?.split(' ').length === 3);
     await over(page);
-    expect(await page.locator('.job .state.done').count() === 3, 'not all jobs are done');
+    const done = () => document.querySelectorAll('.job .state.done').length === 3;
+    expect(await page.waitForFunction(done, null, { timeout: 20000 }).then(() => true, () => false), 'not all jobs are done');
     await run(page, 'predict');
     await page.waitForFunction(() => document.documentElement.dataset.runs.split(' ').length === 4);
     await over(page);
@@ -216,7 +217,9 @@ const CHECKS = {
     await page.waitForFunction(() => document.querySelectorAll('iframe.report').length === 2);
     await page.waitForFunction(() => /µm/.test(document.querySelector('.job[aria-current=true] .figures').textContent));
     for (const name of ['predict', 'time']) {
-      const frame = page.frames().find(f => f.url().includes(`/${name}/report.html`));
+      const find = () => page.frames().find(f => f.url().includes(`/${name}/report.html`));
+      for (let k = 0; k < 100 && !find(); k++) await page.waitForTimeout(50);
+      const frame = find();
       await frame.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
     }
     await picture(page, 'workbench-shop.png');
