@@ -18,19 +18,19 @@ namespace {
 
 constexpr int kSteps = EnvelopeBlocks::kSteps;
 
-/// Of four chips of one ring, N, as edge_force has them.
+/// Forces of four chips of one ring, N, as edge_force returns them.
 struct EdgeForces {
   std::array<double, kSteps> tangential, radial, axial;
 };
 
-/// Where the four chips stand and what their forces are added to.
+/// Place of the four chips and the sums to which their forces are added.
 struct Sums {
   const float *cosine_phi, *sine_phi;
-  double sine, cosine;  ///< of the ring's normal angle
+  double sine, cosine;  ///< sine and cosine of the ring's normal angle
   double radius_mm;
-  const double* compliance;  ///< [nodes] of the ring, mm/N
+  const double* compliance;  ///< [nodes]: compliance of the ring, mm/N
   double axis_x, axis_y;     ///< compliance of the machine's axes, mm/N
-  int nodes, row;            ///< of deflection: steps, filled up
+  int nodes, row;            ///< nodes, and length of a row of deflections: the steps, filled up to whole vectors
   double *fx, *fy, *fz, *torque, *deflection;
 };
 
@@ -54,7 +54,7 @@ void add_four(const EdgeForces& e, const Sums& s) {
   }
 }
 
-/// Of an affine law without a ramp.
+/// Forces by an affine law without a ramp.
 inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, const float* h,
                           const std::uint8_t* cut_255, double width, EdgeForces& e) {
   const double width_255 = width / 255;
@@ -68,7 +68,7 @@ inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, co
 
 }  // namespace
 
-/// What an end adds to the sums that hold every sample whole, drawn in a straight line to the next step.
+/// Adds the correction of a chip's end to sums that count every sample completely and fade linearly to the next step.
 void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm) const {
   const auto& ring = envelope_.rings[static_cast<std::size_t>(e.ring)];
   const int pitch = envelope_.steps_per_pitch, turn = pitch * kFine;
@@ -83,7 +83,7 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
     const ForceComponents on = force_components(f.tangential_N, f.radial_N, f.axial_N, sine, cosine, sn, c);
     return std::array<double, 4>{on.x, on.y, on.z, f.tangential_N * ring.profile.radius_mm};
   };
-  // Affine: a millimetre of thickness, and the edge.
+  // An affine law: force per millimetre of thickness, and the edge force.
   const EdgeForce k = affine ? edge_force_slope(material_, 1) : EdgeForce{};
   const auto per_mm = on_tool({k.tangential_N * width, k.radial_N * width, k.axial_N * width});
   const auto edge =
@@ -96,8 +96,8 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
     if ((u <= 0 && share == 1) || (u >= 1 && share == 0)) continue;
     // On the way back from the sample, steps: the line to the sample before.
     const double back = std::max(0.0, -u), drawn = e.thickness_mm + back * (e.inside_mm - e.thickness_mm);
-    // Over the part of the ring that is in the cut the chip falls evenly to nothing. Nowhere is it thicker than the
-    // chip that it is the end of, however steep the fall.
+    // Over the part of the ring in the cut the chip falls evenly to zero. It is nowhere thicker than the chip whose end
+    // it is, however steep the fall.
     const double most = std::max(e.thickness_mm, e.inside_mm) + back * std::max(0.0, e.inside_mm - e.thickness_mm);
     const double thickness =
         e.fall_mm > 0
@@ -134,7 +134,7 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
 
 namespace {
 
-/// Deflections along x and y, [count] each, with straight lines between the steps.
+/// Interpolates deflections along x and y, [count] each, linearly between the steps.
 void draw_between_steps(const double* x, const double* y, std::size_t count, float* fine) {
   for (std::size_t m = 0; m < count; ++m) {
     const std::size_t next = m + 1 < count ? m + 1 : 0;
@@ -151,7 +151,7 @@ void draw_between_steps(const double* x, const double* y, std::size_t count, flo
   }
 }
 
-/// The same of axial deflections, compliance times force: of each fine step its own and the next one's.
+/// Does the same for axial deflections: compliance times the force of each fine step and the next one.
 void draw_axial(const double* force, double compliance, std::size_t count, float* fine) {
   const auto at = [&](std::size_t i) {
     const std::size_t m = i / kFine % count, next = m + 1 < count ? m + 1 : 0;
@@ -180,7 +180,7 @@ class PassSums {
     values_ = room.data();
   }
   std::size_t row() const { return row_; }
-  /// From the pitch's first step on.
+  /// Row from the first step of the pitch on.
   double* of(std::size_t i) const { return values_ + i * row_ + kAside; }
   Sums at(int step) const {
     Sums s{};
@@ -208,7 +208,7 @@ removal::ChipBlock ToothPassModel::tooth_block(int j, const EnvelopeBlocks& bloc
     const auto& ring = envelope_.rings[p / static_cast<std::uint32_t>(envelope_.steps)];
     const MotionChip motion = motion_chip(direction(p, ring), ring, of_tool.at(place_mm(p)));
     const double thickness = even.thickness_mm[l];
-    // Where even teeth would not cut, only what the teeth before have left is as near as the motion tells.
+    // Where uniform teeth would not cut, only what the teeth before have left is as close as the motion says.
     constexpr double kSame_mm = 1e-4;
     const bool after_tooth =
         (even.after_tooth >> lane & 1u) != 0 || (thickness < 0 && thickness > motion.even_mm - kSame_mm);
@@ -276,12 +276,12 @@ void ToothPassModel::evaluate(const EnvelopeBlocks& blocks, std::span<const remo
     const int gone = static_cast<int>(passing % static_cast<std::size_t>(teeth_.count())) * pitch;
     thread_local std::vector<removal::ChipBlock> own;
     for (int j = 0; j < teeth_.count(); ++j) {
-      // Rotation step at which the tooth is at a point.
+      // The rotation step at which the tooth passes the point.
       const int ahead = gone - tooth_step_[static_cast<std::size_t>(j)];
       const auto step_at = [&](std::uint32_t p) { return ((static_cast<int>(p) % turn + ahead) % turn + turn) % turn; };
       own.clear();
       for (const removal::ChipBlock& chip : chips) {
-        // What lies beside the pitch tells where the chips in it end.
+        // Samples beside the pitch show where its chips end.
         int step = step_at(blocks.point(chip.block, 0));
         if (step >= pitch + kSteps) step -= turn;
         if (step < -2 * kSteps) continue;

@@ -17,13 +17,13 @@ namespace {
 
 constexpr int kMaxSteps = 8;
 constexpr int kMaxDamped = 60;
-constexpr double kExact_mm = 2e-5;  ///< of delta - C F, at any node
+constexpr double kExact_mm = 2e-5;  ///< largest residual delta - C F at any node
 constexpr double kFar2_mm2 = 1e4;   ///< no tool bends that far and cuts
 constexpr int kMaxHalvings = 5;
-constexpr double kNothing_mm = 1e-8;  ///< of a deflection: rows are kept as floats
+constexpr double kNothing_mm = 1e-8;  ///< smallest deflection that counts: rows are stored as floats
 
-/// Unknowns of a rotation step: the lateral deflections at the first and at the last node, and of a tool that yields
-/// along its axis the axial one.
+/// Number of unknowns of a rotation step: the lateral deflections at the first and at the last node, and the axial one
+/// of a tool that yields along its axis.
 constexpr int kLateral = 4, kWithAxial = 5;
 template <int kUnknowns>
 using Coarse = Eigen::Matrix<double, kUnknowns, kUnknowns>;
@@ -34,7 +34,7 @@ using ByCoarse = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
 
 Coarse<kLateral> inverse_of(const Coarse<kLateral>& m) { return m.inverse(); }
 
-/// By blocks: of four unknowns Eigen has a fast inverse.
+/// Inverts by blocks, since Eigen has a fast inverse for four unknowns.
 Coarse<kWithAxial> inverse_of(const Coarse<kWithAxial>& m) {
   const Coarse<kLateral> lateral = Coarse<kLateral>(m.topLeftCorner<4, 4>()).inverse();
   const LateralDeflection from_axial = lateral * m.topRightCorner<4, 1>();
@@ -125,7 +125,7 @@ StaticEquilibrium::Element StaticEquilibrium::element(const EdgeElement& f, cons
   e.thickness_mm = e.solved_mm = f.thickness_mm;
   e.width_mm = bent.chip.width_fraction() * envelope_.rings[r].width_mm;
   e.ring = r, e.chip = f.chip;
-  // As removal/simd/upright_kernels_impl.h, read_points.
+  // The same formula as in removal/simd/upright_kernels_impl.h, read_points.
   constexpr double kLevel = 0.05;
   const double around = -feed.dot(d.tangential), up = feed.dot(d.meridian);
   const bool leans = ring.sine >= kLevel;
@@ -135,7 +135,7 @@ StaticEquilibrium::Element StaticEquilibrium::element(const EdgeElement& f, cons
   return e;
 }
 
-/// What follows from deflection_.
+/// Updates everything that depends on deflection_.
 void StaticEquilibrium::place_deflections() {
   const std::size_t row = 2 * nodes_;
   for (std::size_t m = 0; m < steps_; ++m) {
@@ -171,7 +171,7 @@ double StaticEquilibrium::lean_mm(const Element& e, std::size_t m) const {
          e.by_height * e.normal.dot(Vec2(upper[0] - lower[0], upper[1] - lower[1]));
 }
 
-/// C F + run-out - displacement at rotation step m, and how C F changes.
+/// Calculates the residual C F + run-out - displacement at rotation step m, and the derivatives of C F.
 CAMBER_VECTOR_CLONES
 void StaticEquilibrium::balance(std::size_t m) {
   const std::size_t from = 2 * m * nodes_;
@@ -204,7 +204,8 @@ void StaticEquilibrium::balance(std::size_t m) {
     const EdgeForce k = edge_force_slope(material, h, ramp);
     const Vec2 force = lateral_on_tool(f, e.tangential, e.normal, e.meridian);
     const Vec2 slope = e.width_mm * lateral_on_tool(k, e.tangential, e.normal, e.meridian);
-    // Thickness by the deflections at the first and the last node, of this rotation step and of those beside it.
+    // Derivatives of the thickness by the deflections at the first and the last node, of this step and of those beside
+    // it.
     const Vec2 own = !by_cap ? e.deeper : first_stamp_ ? Vec2(Vec2::Zero()) : e.normal;
     const double up = ring.height_fraction;
     std::array<double, 4> by_own{(1 - up) * own.x(), (1 - up) * own.y(), up * own.x(), up * own.y()}, by_side{};
@@ -257,8 +258,8 @@ void StaticEquilibrium::balance_axial(std::size_t m, double force_z, double slop
   axial_by_side_[5 * m + 4] += change * by_axial.side;
 }
 
-/// (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the deflections x at the first and last
-/// node, and along the axis: elimination with the last step's deflection kept as a border.
+/// Solves (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m around the turn, for the deflections x at the first and
+/// last node and along the axis, by elimination with the last step's deflection kept as a border.
 template <int kUnknowns>
 void StaticEquilibrium::solve_coarse() {
   using Block = Coarse<kUnknowns>;
@@ -319,7 +320,7 @@ void StaticEquilibrium::solve_coarse() {
     ahead[m] = inverse * a;
     border[m] = inverse * b;
   }
-  // The first step's deflection by the last one's.
+  // The deflection of the first step in terms of the last one.
   Deflection first_value = value[n - 2];
   Block first_border = border[n - 2];
   const Deflection before_value = first_value;
@@ -340,7 +341,7 @@ void StaticEquilibrium::solve_coarse() {
   }
 }
 
-/// Returns the sum of squares of what is left.
+/// Updates all residuals. Returns the sum of their squares.
 double StaticEquilibrium::balance_all() {
   place_deflections();
   const auto row = static_cast<Eigen::Index>(2 * nodes_);
@@ -358,7 +359,7 @@ double StaticEquilibrium::balance_all() {
   return axial_ ? squares(left_) + squares(axial_left_) : squares(left_);
 }
 
-/// Newton's step of all nodes; rotation steps in balance stay.
+/// Takes Newton's step at all nodes; rotation steps that are in equilibrium stay.
 void StaticEquilibrium::advance() {
   for (std::size_t m = 0; m < steps_; ++m) {
     const std::size_t ahead = m + 1 == steps_ ? 0 : m + 1, behind = m == 0 ? steps_ - 1 : m - 1;
@@ -380,7 +381,7 @@ void StaticEquilibrium::advance() {
     if (moves[m] != 0) stale_[m + 1 == steps_ ? 0 : m + 1] = stale_[m == 0 ? steps_ - 1 : m - 1] = 1;
 }
 
-/// Newton's step of the axial deflection, and what that adds to the lateral one's.
+/// Takes Newton's step of the axial deflection, and adds its effect to the lateral one.
 void StaticEquilibrium::advance_axial(std::size_t m, std::size_t ahead, std::size_t behind, bool stays) {
   axial_step_[m] = stays ? 0.0 : axial_coarse_[m];
   if (stays) return;
@@ -395,8 +396,8 @@ void StaticEquilibrium::step_from(const std::vector<double>& from, const std::ve
   for (std::size_t m = 0; m < steps_; ++m) axial_deflection_[m] = axial_from[m] + way * axial_step_[m];
 }
 
-/// Where Newton's method swings about a corner of the force: a tool that creeps towards the balance, as a damped one
-/// would, comes to rest at a balance that is stable. Rotation steps that come nearer creep faster.
+/// Used where Newton's method oscillates about a corner of the force: the deflection moves towards the equilibrium like
+/// that of a damped tool and comes to rest at a stable one. Rotation steps that come nearer move faster.
 void StaticEquilibrium::creep(Step& out) {
   constexpr double kFirst = 0.5, kMax = 4, kFaster = 0.4, kSlower = 2;
   std::vector<double> least(steps_, 0.0);

@@ -1,5 +1,14 @@
 #pragma once
-// Static equilibrium of force and deflection, delta = C F(chip(delta)), for one tooth passing.
+// Solves the static equilibrium of force and deflection of one tooth passing, delta = C F(chip(delta)).
+//
+// delta is the deflection of the tool at every rotation step and node height, C the compliance of beam and machine, F
+// the force of all edge elements at that step. The chip of an element changes with the deflection of its own step
+// (depth and motion bound, as removal::DeflectedChipSample gives them) and, through the tilt of the deflected envelope,
+// with that of the steps before and after. Newton's method therefore solves a cyclic block-tridiagonal system around
+// the turn:
+//   (1 - own_m) x_m - side_m (x_(m+1) - x_(m-1)) = left_m,
+// with four unknowns per step (lateral deflection at the first and the last node) or five (the axial one too). Where
+// the force has corners and Newton's method oscillates, the deflection creeps to a stable equilibrium instead (creep).
 #include <array>
 #include <cstddef>
 #include <span>
@@ -24,17 +33,17 @@ class StaticEquilibrium {
 
   struct Step {
     double rms_um = 0;   ///< rms of the change at the tip over the rotation steps in the cut
-    double size_um = 0;  ///< the same for the deflection
+    double size_um = 0;  ///< rms of the deflection itself, likewise
     bool solved = true;
-    int steps = 0;  ///< of Newton's method
+    int steps = 0;  ///< number of Newton steps
   };
   struct Motion {
     removal::ToothMotion of_tool;
     bool first = false;  ///< Stamp::first
   };
-  /// chips: as read with the displacements in `row` (of a DeflectionTable): deflections, and `run_out` where there is
-  /// any: the axis' offset at each rotation step, mm, or empty. Goes `share` of the way from `row` to the equilibrium
-  /// row = run_out + C F; the chips' thickness follows.
+  /// Moves `row` by the fraction `share` of the way to the equilibrium row = run_out + C F, and updates the thickness
+  /// of `chips`. `row`: displacements of the stamp, a row of removal::DeflectionTable; `chips`: as read with these
+  /// displacements; `run_out`: offset of the axis at each rotation step, mm; empty: none.
   Step solve(std::span<removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion, double share,
              std::span<const Vec2> run_out, std::span<float> row);
 
@@ -47,13 +56,13 @@ class StaticEquilibrium {
   struct Element {
     Vec2 normal, tangential, meridian, deeper;
     double normal_z, meridian_z, deeper_z;
-    double depth_mm, cap_mm;  ///< as read
-    double thickness_mm;      ///< the lesser of them, or a tooth's that is not even
+    double depth_mm, cap_mm;  ///< depth and motion bound as read
+    double thickness_mm;      ///< the smaller of the two; for a non-uniform tooth its own chip
     double by_step,
-        by_height;   ///< of the lean: by deflections of the steps before and after, by deflections of the nodes
-    double lean_mm;  ///< as read
+        by_height;   ///< derivatives of the tilt term: by the steps before and after, by the nodes
+    double lean_mm;  ///< tilt term of the chip, as read
     double width_mm;
-    double solved_mm;  ///< thickness with the deflection as it is
+    double solved_mm;  ///< thickness with the present deflection
     std::uint32_t ring, chip;
   };
   void place_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing, const Motion& motion);
@@ -64,9 +73,9 @@ class StaticEquilibrium {
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
   void balance(std::size_t m);
-  /// What one element adds to the balance of the axial deflection, and to what that changes.
+  /// Derivatives of an element's thickness by axial deflections.
   struct AxialChange {
-    double own, side;  ///< of the thickness, by the axial deflections of this step and of those beside it
+    double own, side;  ///< by the axial deflection of this step, and of the steps beside it
   };
   void balance_axial(std::size_t m, double force_z, double slope_z, const std::array<double, 4>& by_own,
                      const std::array<double, 4>& by_side, const AxialChange& by_axial);
@@ -83,31 +92,32 @@ class StaticEquilibrium {
   std::size_t steps_, nodes_;
   std::vector<Ring> rings_;
   std::vector<EdgeElement> found_;
-  std::vector<std::size_t> place_;  ///< of those found, in elements_
+  std::vector<std::size_t> place_;  ///< index in elements_ of each element found
   std::vector<Element> elements_;   ///< rotation step by rotation step
-  std::vector<std::size_t> first_;  ///< of a rotation step's elements
+  std::vector<std::size_t> first_;  ///< index of the first element of each rotation step
   double max_lean_mm_ = 0;
   bool first_stamp_ = false;
-  std::span<const Vec2> run_out_;  ///< of the rotation steps; empty: none
+  std::span<const Vec2> run_out_;  ///< one per rotation step; empty: none
   bool axial_;                     ///< the tool yields along its axis
-  // [steps]: the axial deflection, as the lateral ones below.
+  // [steps]: axial counterparts of the lateral arrays below.
   std::vector<double> axial_read_, axial_deflection_, axial_moved_, axial_side_, axial_left_, axial_step_;
   std::vector<double> axial_coarse_;
-  /// [steps][5]: of C F along the axis, by the lateral deflections at the first and last node and by the axial one.
+  /// [steps][5]: derivatives of the axial C F by the lateral deflections at the first and last node and by the axial
+  /// one.
   std::vector<double> axial_by_own_, axial_by_side_;
-  /// [steps][nodes][2]: of the lateral C F by the axial deflections.
+  /// [steps][nodes][2]: derivatives of the lateral C F by the axial deflections.
   std::vector<double> by_own_axial_, by_side_axial_;
   // [steps][nodes][2]:
   std::vector<double> read_, deflection_;
-  std::vector<double> moved_, side_;  ///< deflection less the one that was read; of the step ahead less of that behind
-  std::vector<double> left_;          ///< C F - delta
-  std::vector<double> step_;          ///< Newton's
+  std::vector<double> moved_, side_;  ///< deflection minus the one that was read; step ahead minus step behind
+  std::vector<double> left_;          ///< residual C F - delta
+  std::vector<double> step_;          ///< Newton step
   std::vector<double> by_own_,
-      by_side_;                  ///< [steps][nodes][2][4]: of C F, by the deflections at the first and last node
-  std::vector<double> coarse_;   ///< [steps][4]: Newton's step there
+      by_side_;                  ///< [steps][nodes][2][4]: derivatives of C F by the first and last node
+  std::vector<double> coarse_;   ///< [steps][4]: Newton step at these two nodes
   std::vector<double> damping_;  ///< [steps]: how much slower than Newton's step a deflection follows
-  std::vector<double> norm_;     ///< [steps]: largest of left_
-  std::vector<char> stale_;      ///< [steps]: deflections have changed since left_ was worked out
+  std::vector<double> norm_;     ///< [steps]: largest magnitude of left_
+  std::vector<char> stale_;      ///< [steps]: deflections have changed since left_ was calculated
 };
 
 }  // namespace camber::deflection

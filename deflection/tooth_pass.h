@@ -1,5 +1,26 @@
 #pragma once
-// Force on the tool and its deflection at every rotation step of one tooth passing.
+// Force on the tool and its deflection at every rotation step of one tooth passing. This is the door of deflection/.
+//
+// Overview
+//
+// removal/engagement.h gives the chips of a stamp: thickness and width at points of the cutter's envelope. This folder
+// turns them into forces on the tool and into the deflection of the tool, in the tool's frame (base/tool_pose.h: origin
+// at the tip, z along the axis, x where the spindle carries it).
+//
+//   chips -> edge_force (law of the material) -> tool_frame (tangential, radial, axial to x, y, z)
+//         -> sum over the edge at each rotation step -> beam (compliance) -> deflection at a few node heights
+//
+// - A tooth passing is the time from one tooth to the next. It is divided into rotation steps; a point of the envelope
+//   is in the cut at the step at which an edge passes it. ToothPassModel sums up one passing.
+// - Rigid coupling: chips do not depend on the deflection. chip_ends finds when, between two steps, an edge enters and
+//   leaves the material, so that the surface gets kFine deflections per step.
+// - Static coupling: delta = C F(chip(delta)), with C the compliance of the beam. static_equilibrium solves this for
+//   chips that were read once; static_cut reads, solves and reads again until the deflection stays, stamp after stamp.
+//   reading_pace leaves passings out where the cut changes slowly.
+// - Non-uniform teeth: teeth (chip of each tooth), run_out_offsets (static), tooth_marks (instant of each tooth's
+// mark). - steady_cut needs no stock: forces of a straight cut in closed form, for fits, plans and checks.
+//
+// Equations and sources stand in the headers; docs/force.md and docs/engagement.md have the reasons.
 #include <span>
 #include <vector>
 
@@ -22,10 +43,10 @@ constexpr int kFine = 4;
 struct ToothPass {
   std::vector<Vec3> force_N;         ///< per rotation step, on the tool, tool's frame
   std::vector<double> torque_Nmm;    ///< spindle torque per rotation step
-  double work_Nmm = 0;               ///< work work of the spindle over the tooth passing
+  double work_Nmm = 0;               ///< work of the spindle over the tooth passing
   double chip_max_mm = 0;            ///< thickest chip
   double chip_area_mm2 = 0;          ///< area of the envelope in the cut; chip volume / area is the mean thickness
-  std::vector<float> deflection_mm;  ///< as a row of removal::DeflectionTable
+  std::vector<float> deflection_mm;  ///< laid out as a row of removal::DeflectionTable
 };
 
 /// One revolution of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip
@@ -55,8 +76,8 @@ class ToothPassModel {
 
   /// The tool yields along its axis.
   bool axial() const { return axial_compliance_mm_per_N_ > 0; }
-  /// Of the whole tool, machine and all, along its axis to an axial force at the tip. A force higher up stretches less
-  /// of the bar; of a hundred newtons that is hundredths of a micrometre.
+  /// Axial compliance of tool, holder and machine to an axial force at the tip, mm/N. A force higher up would stretch
+  /// less of the bar: hundredths of a micrometre for a hundred newtons.
   double axial_compliance_mm_per_N() const { return axial_compliance_mm_per_N_; }
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
@@ -64,19 +85,19 @@ class ToothPassModel {
   /// non-uniform teeth. `motion`: in one mean pitch.
   void evaluate(std::span<const removal::ChipSample> chips, std::size_t passing, const removal::ToothMotion& motion,
                 ToothPass& out) const;
-  /// The same for chips in blocks, with the instants at which each edge element enters and leaves the material; without
-  /// feedback. fine_mm: takes the deflection of steps * kFine rotation steps, a row of removal::DeflectionTable.
+  /// Does the same for chips in blocks (rigid coupling), with the instants at which each edge element enters and leaves
+  /// the material. `fine_mm` receives the deflection at steps * kFine instants, a row of removal::DeflectionTable.
   void evaluate(const removal::EnvelopeBlocks& blocks, std::span<const removal::ChipBlock> chips, std::size_t passing,
                 const removal::ToothMotion& motion, ToothPass& out, std::span<float> fine_mm) const;
   /// The edge elements of the chips, including those with negative thickness.
   void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
                      const removal::ToothMotion& motion, std::vector<EdgeElement>& out) const;
   EdgeDirections direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
-  /// Of a point of the envelope, from the tip.
+  /// Position of a point of the envelope, from the tip, in the tool's frame.
   Vec3 place_mm(std::uint32_t point) const;
   const machine::Material& material() const { return material_; }
   double edge_ramp_mm() const { return edge_ramp_mm_; }
-  /// Of the node's x and y to a force at a ring, mm/N.
+  /// Compliance of a node along x and y to a force at a ring, mm/N, machine axes included.
   Vec2 compliance_mm_per_N(std::size_t ring, std::size_t node) const {
     return axis_compliance_.array() + compliance_[ring * node_height_mm_.size() + node];
   }
@@ -91,10 +112,10 @@ class ToothPassModel {
   /// Additional depth of tooth j in an older surface compared with uniform teeth, along the normal. A surface cut by
   /// the same tool is as deep as its longest tooth left it.
   double deeper_mm(int j, bool own_surface, const removal::EnvelopeGrid::Ring& ring) const;
-  /// Chip of tooth j where uniform teeth would take `chip`.
+  /// Returns the chip of tooth j, mm, where uniform teeth would take `chip`.
   double tooth_chip_mm(int j, const removal::ChipSample& chip, const EdgeDirections& d,
                        const removal::EnvelopeGrid::Ring& ring, const removal::ToothMotion& motion) const;
-  /// The same for a block of points, without clipping at zero: negative values are distances to the material.
+  /// Does the same for a block of points, without clipping at zero: negative values are distances to the material.
   removal::ChipBlock tooth_block(int j, const removal::EnvelopeBlocks& blocks, const removal::ChipBlock& even,
                                  const removal::ToothMotion& motion) const;
   /// Motion bound of one mean pitch at a point, along the normal (removal/engagement.h).
@@ -111,7 +132,7 @@ class ToothPassModel {
   const removal::EnvelopeGrid& envelope_;
   machine::Material material_;
   double edge_ramp_mm_;
-  Vec2 axis_compliance_;  ///< of the machine's x and y axes, mm/N, the same at every height
+  Vec2 axis_compliance_;  ///< compliance of the machine's x and y axes, mm/N, the same at every height
   double axial_compliance_mm_per_N_;
   Teeth teeth_;
   std::vector<int> tooth_step_;  ///< rotation steps from tooth 0 to each tooth
@@ -119,10 +140,10 @@ class ToothPassModel {
   std::vector<double> compliance_;  ///< [rings][nodes], mm/N
 };
 
-/// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, where 12 nodes suffice at most 2 mm or a tenth
-/// of the fluted length L apart. Below a force F a beam is straight, above it its curvature is F (z - z_F) / (E I):
-/// linear interpolation between nodes a tenth of L apart beside a force has an error of less than a twentieth of a
-/// percent of F L^3 / (3 E I).
+/// Returns node heights for a cutter that is engaged up to `top_mm`: evenly spaced, where 12 nodes suffice at most 2 mm
+/// or a tenth of the fluted length L apart. Below a force F a beam is straight, above it its curvature is F (z - z_F) /
+/// (E I): linear interpolation between nodes a tenth of L apart beside a force has an error of less than a twentieth of
+/// a percent of F L^3 / (3 E I).
 std::vector<double> node_heights(double top_mm, double fluted_length_mm = 0);
 
 }  // namespace camber::deflection
