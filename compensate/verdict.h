@@ -17,7 +17,7 @@ namespace camber::compensate {
 struct PlainFigures {
   removal::ErrorFigures error_um, deflection_um, contour_um;
   std::optional<removal::ErrorFigures> total_um;  ///< against the part's mesh
-  double in_band_fraction = 0;                    ///< of the area whose judged error is within tolerance or profile
+  double in_band_fraction = 0;                    ///< fraction of the area within tolerance or profile
 };
 
 /// `observed`: of the same surface, with its reach. `total_mm`: one per point, or empty.
@@ -30,11 +30,11 @@ const removal::ErrorFigures& judged_of(const PlainFigures& figures, machine::Ref
 /// The 95th percentile is within tolerance_um; with profile_um: 95 % of the area is within the band.
 bool within_tolerance(const PlainFigures& figures, const machine::CompensationSettings& asked);
 
-/// The same of judged errors, um, each of an area.
+/// Returns the figures of judged errors, um, each with an area.
 bool within_tolerance(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
                       const machine::CompensationSettings& asked);
 
-/// What the contour error of a piece of surface comes from (simulate/contour.h).
+/// Cause of the contour error of a piece of surface (simulate/contour.h).
 enum class ContourCause { none, lag, path_tolerance, corner_law };
 /// The part of the contour error that makes half or more of the error of the points with `cause`. `surface`: the same
 /// points.
@@ -46,12 +46,12 @@ struct CauseFigure {
   Cause cause = Cause::correctable;
   double rms_um = 0;
   std::vector<ProgramLine> lines{};           ///< the worst ones, ascending
-  ContourCause contour = ContourCause::none;  ///< of what changes faster than a smooth shift can
-  std::vector<std::string> remedies{};        ///< that were not tried
+  ContourCause contour = ContourCause::none;  ///< cause of what changes faster than a smooth shift can
+  std::vector<std::string> remedies{};        ///< remedies that were not tried
 };
 
-/// Those that make a tenth of the mean square or more, the largest first, without remedies. `lines`: one per point of
-/// the surface.
+/// Returns the causes that make a tenth of the mean square or more, the largest first, without remedies. `lines`: one
+/// per point of the surface.
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
                                    const Observed& observed, const std::vector<ProgramLine>& lines);
 
@@ -61,20 +61,20 @@ inline constexpr const char *kMaxShiftKey = "max_shift_mm", *kAngleGrowthKey = "
 /// A limit of the job that kept the path from the shifts that its error asks for.
 struct BindingLimit {
   std::string key;   ///< "max_shift_mm"
-  double value = 0;  ///< of the job, in the key's unit
+  double value = 0;  ///< value of the job, in the key's unit
   double binds_no_more_at = 0;
   bool own = true;  ///< false: the job does not give it
 };
 /// "max_shift_mm = 0.1 binds; from 0.134 on it would not".
 std::string sentence(const BindingLimit& limit);
 
-/// What a compensation has used.
+/// The levers that a compensation has used.
 struct Tried {
   bool rounds = false;  ///< they ended before max_rounds: one more was not worth it
   bool feeds = false, second_cuts = false;
   std::vector<BindingLimit> limits{};
 };
-/// What may take a cause away and has not been tried.
+/// Returns what may remove a cause and has not been tried.
 std::vector<std::string> remedies_of(const CauseFigure& cause, const Tried& tried);
 
 /// "line 12", "lines 12, 14 (15 as emitted)".
