@@ -78,7 +78,7 @@ class Places {
          const MoveMap& map, std::span<const simulate::PathFraction> own_target, const std::vector<bool>& first_cuts)
       : path_(path), given_(given), emitted_(emitted), map_(map), own_target_(own_target), first_cuts_(first_cuts) {}
 
-  /// Nothing where the point's stamp is of no move that may be shifted.
+  /// Returns nothing where the point's stamp belongs to no move that may be shifted.
   std::optional<ShiftPath::PointInterval> machined(const removal::SurfacePoint& p) const {
     if (!was_cut(p)) return std::nullopt;
     const auto& stamp = emitted_.path.stamps[static_cast<std::size_t>(p.machined_stamp)];

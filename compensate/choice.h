@@ -1,5 +1,5 @@
 #pragma once
-// Choice of the round to emit.
+// Chooses the round whose program is emitted.
 #include <cstddef>
 #include <span>
 
@@ -11,7 +11,7 @@ struct RoundFigures {
   bool over_budget = false;       ///< takes more machine time than is allowed
 };
 
-/// Index of the best round that keeps the limits; rounds[0], the given program, where none does. A round keeps them
+/// Returns the index of the best round that keeps the limits; 0, the given program, where none does. A round keeps them
 /// if its rms is less and its 95th percentile no more than the given program's, and its depth no more than the limit or
 /// the given program's, within the time allowed. Of these the ones within the limit come first, then the one of least
 /// rms, or of the least 95th percentile where `by_p95` (the feed lever works on that).

@@ -1,5 +1,27 @@
 #pragma once
-// The compensation loop: predict, shift each point against its error, predict the emitted program again.
+// Compensation of a program: predict it, shift each path point against its error, predict the emitted text again.
+// This is the door of compensate/.
+//
+// Overview
+//
+// Input is a job whose program has been read, timed and checked (simulate/setup.h). Each round has these steps:
+//
+// 1. attribution   finds, for every point of the surface, the place on the path that generated it; hidden_rows and
+//                  expected stand in where a neighbouring row has cut that place away.
+// 2. row_form      subtracts what keeps the same form across a row (the bow of a ball), which no shift removes.
+// 3. fit_shift     fits the shifts of the path nodes (shift_path) to the errors by least squares, smoothly along the
+//                  path and from row to row (row_links), divided by the local sensitivity (sensitivity: a deeper cut
+//                  deflects more). splits decides where lines get more nodes.
+// 4. trial         emits the shifted program (nc/emit), reads the text again, times, cuts and judges it.
+// 5. step_model    decides whether another round is worth its prediction, and with which step.
+//
+// Afterwards the guard lifts the path where the surface lies deeper in the part than the limit, the levers lower feeds
+// (feed_lever, feed_plan, least_feed) or repeat runs (passes) where the job allows it, and choice takes the best round
+// within the limits. verdict, error_split, safety, path_quality, surface_steps and uncertainty describe what comes out;
+// verify judges an emitted program from its text. loop.h has the state of all this and says where each step is.
+//
+// The reference is error_um: the machined surface minus the one that the commanded path leaves with a rigid tool, along
+// the normal. All lengths are mm unless the name says otherwise. docs/compensation.md has equations and figures.
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,22 +44,23 @@
 
 namespace camber::compensate {
 
-/// Judged on the emitted text. tolerance: it is within tolerance and depth limit; depth_limit: the depth limit keeps
-/// the error over the tolerance; stalled: the rms no longer falls, or nothing is left that a shift can correct.
+/// Why the rounds ended, judged on the emitted text. tolerance: it is within tolerance and depth limit; depth_limit:
+/// the depth limit keeps the error over the tolerance; stalled: the rms no longer falls, or nothing is left that a
+/// shift can correct.
 enum class Stop { tolerance, stalled, rounds, depth_limit };
 std::string to_string(Stop stop);
 
 struct Round {
-  removal::ErrorFigures error_um;  ///< judged, of the program that this round emitted: see PlainFigures
+  removal::ErrorFigures error_um;  ///< judged error of the program that this round emitted, see PlainFigures
   ErrorSplit split;
   double largest_shift_mm = 0;
-  std::size_t limited_points = 0;     ///< cut to max_shift_mm
+  std::size_t limited_points = 0;     ///< points whose shift was cut to max_shift_mm
   double gain = 1;                    ///< mean sensitivity of the error to the shift, by which the step was divided
-  double step_fraction = 1;           ///< of the step that was taken; less than 1 after an over-correction
-  double overcorrected_fraction = 0;  ///< of the area: the error changed its sign and is still over the tolerance
-  double deepest_um = 0;  ///< into the part, where compensated moves cut, but for a thousandth of the surface
-  bool guard = false;     ///< a round of the guard against gouging
-  double free_angle_growth_rad = 0;  ///< of angles between blocks and rows, before max_angle_growth_deg held them back
+  double step_fraction = 1;           ///< fraction of the step taken; less than 1 after an over-correction
+  double overcorrected_fraction = 0;  ///< fraction of the area whose error changed its sign and is over the tolerance
+  double deepest_um = 0;              ///< depth that 99.9 % of the compensated surface keeps
+  bool guard = false;                 ///< a round of the guard against gouging
+  double free_angle_growth_rad = 0;   ///< growth of angles before max_angle_growth_deg bounded it
   double machine_time_s = 0;
   std::size_t slowed = 0;    ///< changes of feed: stretches of the path with a feed of their own, and their ends
   std::size_t repeated = 0;  ///< runs of cuts between rapids that are cut twice
@@ -58,11 +81,11 @@ struct RepeatedRun {
 
 struct CompensationResult {
   std::string text;                          ///< the emitted program of the best round
-  std::vector<std::uint32_t> block_of_line;  ///< of `text`, as nc::Emission has it; empty: the given program
-  std::vector<LineRole> lines;               ///< of the given program, one per line
+  std::vector<std::uint32_t> block_of_line;  ///< by line of `text`, see nc::Emission; empty: the given program
+  std::vector<LineRole> lines;               ///< one per line of the given program
   machine::Operations operations;            ///< the job's, as lines of the given program
   bool own_target = true;                    ///< the given program is the target
-  bool better = true;  ///< that round is better than the given program, or that is good, and within the limits
+  bool better = true;  ///< the round is better than the given program, or that is good, and within limits
   machine::Reference reference = machine::Reference::commanded;
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
@@ -73,21 +96,21 @@ struct CompensationResult {
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
-  std::vector<CauseFigure> causes;   ///< of what is left, where it is over the tolerance
-  std::vector<BindingLimit> limits;  ///< that kept the path from the shifts that its error asks for
+  std::vector<CauseFigure> causes;   ///< causes of the remaining error, where it is over the tolerance
+  std::vector<BindingLimit> limits;  ///< limits that kept the path from the shifts that its error asks for
   ErrorSplit split_before, split_after;
   std::vector<Round> rounds;             ///< rounds[0]: the given program
   std::size_t best = 0;                  ///< index into rounds
-  std::vector<TimePoint> time_points{};  ///< with a lever that takes time; ascending
-  std::vector<RepeatedRun> repeated{};   ///< of the emitted program
-  double pass_allowance_mm = 0;          ///< what the first of two cuts leaves; 0: none is repeated
+  std::vector<TimePoint> time_points{};  ///< only with a lever that takes time; ascending
+  std::vector<RepeatedRun> repeated{};   ///< runs of the emitted program
+  double pass_allowance_mm = 0;          ///< allowance that the first of two cuts leaves; 0: no run is repeated
   std::string repeated_text{};           ///< the program whose path was shifted, where runs are cut twice; else empty
   Stop stop = Stop::rounds;
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
-  std::vector<simulate::StampLoad> loads_before, loads_after;        ///< of the given and of the emitted program
-  removal::StockShape stock;                                         ///< what the target program leaves, for a picture
+  std::vector<simulate::StampLoad> loads_before, loads_after;        ///< loads of the given and of the emitted program
+  removal::StockShape stock;                                         ///< left by the target program, for a picture
   feedmodel::FeedSummary feed_before, feed_after;
   bool settled = true;  ///< every static solution of the first and the best round did
   Finishing finishing;
@@ -95,13 +118,13 @@ struct CompensationResult {
   RowSteps row_steps;
   SurfaceSteps surface_steps;
   double row_turn_rad = 0;          ///< between neighbouring rows of one sense, held like the angles between blocks
-  Depth depth_before, depth_after;  ///< into the part, compensated moves
-  Depth depth_others;               ///< of moves that are not compensated
+  Depth depth_before, depth_after;  ///< depth into the part, compensated moves
+  Depth depth_others;               ///< depth of moves that are not compensated
   Depth depth_without_bending;      ///< of the emitted program
   bool within_part = true;          ///< depth_after is within the depth limit
   std::vector<Recheck> rechecks;    ///< one per voxel asked for
   std::optional<Band> band;
-  std::vector<std::string> unknown_parameters;  ///< with a standard error, but not of this job
+  std::vector<std::string> unknown_parameters;  ///< parameters with a standard error that this job does not have
   std::optional<MeasuredFit> measured;
   /// Reasons why the figures of the given or the emitted program are not reliable (simulate/verdict.h); empty: none.
   std::vector<std::string> doubts;
@@ -112,12 +135,12 @@ using camber::BeyondModel;
 
 struct CompensateOptions {
   simulate::Progress progress;
-  std::size_t max_stock_crossings = 0;  ///< of Compensation::stock; 0: none
+  std::size_t max_stock_crossings = 0;  ///< size of Compensation::stock; 0: none
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
-  /// Of feeds and passes: the least error for so much more machine time. Not given: as much as the tolerance takes.
+  /// Extra machine time that feeds and passes may take for the least error. Not given: as much as the tolerance takes.
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
-  std::vector<ParameterGroup> uncertainty{};  ///< for Compensation::band
+  std::vector<ParameterGroup> uncertainty{};  ///< parameters for Compensation::band
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.
   std::function<std::string(const CompensationResult&)> header{};
 };

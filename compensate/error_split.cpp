@@ -75,13 +75,13 @@ namespace {
 
 /// The judged observations and what fits of less and less freedom leave of them.
 struct Fits {
-  std::vector<std::size_t> index;  ///< into Observed, of each observation
+  std::vector<std::size_t> index;  ///< index into Observed, one per observation
   std::vector<Observation> all;    ///< as observed
   std::vector<Observation> asked;  ///< less the form across the rows
   std::vector<double> at_one_place, smooth, limited;
-  /// Of smooth - at_one_place: what is the same form across the cutter for millimetres along the path. A shift that may
-  /// change from one tooth passing to the next follows it, since a helix leaves each height at another place of the
-  /// path; bow explains it, an entry or a corner does not.
+  /// Finds, in smooth - at_one_place, what keeps the same form across the cutter for millimetres along the path. A
+  /// shift that may change from one tooth passing to the next follows it, since a helix leaves each height at another
+  /// place of the path; bow explains it, an entry or a corner does not.
   std::vector<double> bow_in_short_range{};
 };
 
@@ -125,7 +125,7 @@ PointCause cause_of(const Fits& f, std::size_t i) {
   return out;
 }
 
-/// Of the short range's mean square: the part that bow does not explain.
+/// Returns the part of the short range's mean square that bow does not explain.
 double without_bow(const Fits& f, double area_mm2) {
   std::vector<double> all, rest;
   for (std::size_t i = 0; i < f.all.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
-// Error decomposition: correctable by a shift of the path, not correctable, and prevented by a limit.
+// Error decomposition: which part of the error a shift of the path can correct, which part none can and why, and which
+// part a limit prevents.
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,7 +32,8 @@ struct ErrorSplit {
 
   double not_correctable_um() const;  ///< short_range, opposed, tip and bow together
 
-  /// Of a surface that the guard has lifted: what is left beyond that of the best program without it was given up.
+  /// Decomposition of a surface that the guard has lifted: correctable error beyond that of the best program without
+  /// the guard was given up.
   void give_to_guard(double free_correctable_um);
 };
 
@@ -39,11 +41,11 @@ struct ErrorSplit {
 std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const Observation> observations,
                                           const FitShiftOptions& options);
 
-/// What the best smooth shift, within the largest one, would leave of each observation, mm.
+/// Returns the error that the best smooth shift within the limit would leave at each observation, mm.
 std::vector<double> left_by_shift_mm(const ShiftPath& path, std::span<const Observation> observations,
                                      const FitShiftOptions& options);
 
-/// What a part of an error comes from.
+/// Where a part of an error comes from.
 enum class Cause { correctable, guard, limited, short_range, opposed, tip, bow, not_compensated };
 
 /// The error point by point, one per entry of Observed: which cause most of it has, and how much that is.

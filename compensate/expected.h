@@ -1,5 +1,6 @@
 #pragma once
-// The error that each place of a path would leave, if every other place cut what it should.
+// Expected error: what each place of a path would leave if every other place cut what it should. Stands in for rows
+// that the surface does not show.
 #include <functional>
 #include <vector>
 

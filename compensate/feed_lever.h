@@ -1,5 +1,5 @@
 #pragma once
-// The feed as a second lever: F words for the error that no shift of the path takes away.
+// Feed as a second lever: lower F words where no shift of the path removes the error.
 #include <span>
 #include <vector>
 
@@ -13,8 +13,8 @@ namespace camber::compensate {
 void check_feeds(const simulate::SimulatedProgram& program, const std::vector<bool>& selected,
                  Diagnostics& diagnostics);
 
-/// How the feed along a path is chosen from what the last prediction left, and what is learned from the next one.
-/// Feeds stand in the points of a ShiftPath (feed_fraction). `path` gives the units and is not kept.
+/// Chooses the feed along a path from what the last prediction left, and learns from the next one how the error
+/// follows. Feeds stand in the points of a ShiftPath (feed_fraction). `path` gives the units and is not kept.
 class FeedLever {
  public:
   /// `given`: the program whose path this is, as the machine runs it. `splittable`: lines may be split where the feed
@@ -26,10 +26,11 @@ class FeedLever {
   /// leave of each. `budget_s`: of extra time.
   FeedChoice choose(ShiftPath& path, std::span<const Observation> observations, std::span<const double> left_mm,
                     double budget_s, double wanted_mm);
-  /// What the changed feeds will do to the observations, for the shift that goes with them. `before`: the fractions
+  /// Changes the observations as the new feeds will, for the shift that goes with them. `before`: the fractions
   /// that they were made with.
   void apply_to(std::vector<Observation>& observations, const ShiftPath& path, std::span<const double> before) const;
-  /// From two predictions of the same surface, with their fractions and shifts; and the extra time of the second.
+  /// Learns from two predictions of the same surface, with their fractions and shifts, and from the extra time of the
+  /// second.
   void learn(const ShiftPath& path, std::span<const double> fractions_before, std::span<const Vec3> shifts_before,
              const Observed& before, const Observed& now, double predicted_s, double found_s);
 
@@ -38,7 +39,7 @@ class FeedLever {
 
  private:
   std::vector<FeedUnit> units_;
-  std::vector<std::size_t> unit_of_;  ///< of the piece that ends at each point
+  std::vector<std::size_t> unit_of_;  ///< unit of the piece that ends at each point
   FeedModel model_;
 };
 

@@ -137,7 +137,7 @@ class Chooser {
   std::span<const FeedUnit> units_;
   FeedModel model_;
   std::vector<double> levels_;
-  std::vector<double> shrink_;                ///< of the error, by unit and level
+  std::vector<double> shrink_;                ///< factor on the error, by unit and level
   std::vector<std::vector<Sample>> of_unit_;  ///< the largest error first
   double area_ = 0;
 };

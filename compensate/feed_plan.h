@@ -1,5 +1,5 @@
 #pragma once
-// Where along a path the feed is lowered, and how far: the least error for a machine time.
+// Feed plan: where along a path the feed is lowered and how far, for the least error within a machine time.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -10,7 +10,7 @@ namespace camber::compensate {
 struct FeedUnit {
   std::size_t chain = 0;  ///< units of one chain follow each other along the path
   double length_mm = 0;
-  double time_s = 0;         ///< at the programmed feed; more than length / feed where the control is slower
+  double time_s = 0;         ///< time at the programmed feed; more than length / feed where the control is slower
   double feed_mm_per_s = 0;  ///< programmed
   double least = 1;          ///< lowest fraction of it
 };
@@ -25,12 +25,12 @@ struct FeedPoint {
 /// error(u) = error(u_now) (u / u_now)^exponent for a unit at the fraction u of its programmed feed.
 struct FeedModel {
   double exponent = 0.6;
-  double time_scale = 1;  ///< of the extra time: accelerations between feeds add to it
+  double time_scale = 1;  ///< scale of the extra time: accelerations between feeds add to it
 };
 
 struct FeedChoice {
-  std::vector<double> fraction;  ///< of the programmed feed, one a unit
-  double extra_s = 0;            ///< by the model
+  std::vector<double> fraction;  ///< fraction of the programmed feed, one per unit
+  double extra_s = 0;            ///< extra machine time by the model
   double error_mm = 0;           ///< 95th percentile by the model
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which of the simulated moves are compensated.
+// Selects which of the simulated moves are compensated.
 #include <cstdint>
 #include <vector>
 
@@ -14,7 +14,7 @@ namespace camber::compensate {
 struct Operation {
   int tool = 0;
   std::size_t first_line = 0, last_line = 0;  ///< 1-based
-  double surface_fraction = 0;                ///< of the machined surface that it made
+  double surface_fraction = 0;                ///< fraction of the machined surface that it made
   std::size_t moves = 0, compensated_moves = 0;
 };
 
@@ -26,19 +26,19 @@ struct Finishing {
 /// An operation that makes less of the surface than this is no finishing.
 inline constexpr double kFinishingFraction = 0.05;
 
-/// Of the moves that the job simulates: those that [compensation] operations names by tool, by lines and by comments;
-/// where it names none, the operations that made at least kFinishingShare of the surface (`surface`: of the given
-/// program; empty: all operations).
+/// Returns, of the moves that the job simulates, those that [compensation] operations names by tool, lines and
+/// comments; where it names none, the operations that made at least kFinishingShare of the surface (`surface`: of the
+/// given program; empty: all operations).
 ///
 /// A comment names the moves behind it, up to the next tool change or the next comment; comments on lines behind each
 /// other, without a move between them, are one heading.
 Finishing find_finishing(const machine::Job& job, const simulate::SimulatedProgram& program,
                          const std::vector<removal::SurfacePoint>& surface);
 
-/// What a line of a program is to a compensation.
+/// Role of a line of a program in a compensation.
 enum class LineRole : std::uint8_t { none, compensated, only_simulated };
-/// One per line; a line that both kinds of moves come from counts as compensated. Moves whose words may not be changed
-/// are simulated only.
+/// Returns one role per line; a line that both kinds of moves come from counts as compensated. Moves whose words may
+/// not be changed are simulated only.
 std::vector<LineRole> line_roles(const simulate::SimulatedProgram& program, const std::vector<bool>& compensated);
 
 /// Error [cutter-radius] at the first of `moves` that runs under G41 or G42: its path is made by the control, the text

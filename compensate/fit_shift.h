@@ -1,5 +1,9 @@
 #pragma once
-// Fit of the shifts of the path nodes to the form error.
+// Fits the shifts of the path nodes to the form error.
+//
+// Minimizes sum w a (e/g + n.(s - s_old))^2 + mu int |ds/dl|^2 + mu sum_links l |s_a - s_b|^2 / d^2 + kappa int |s|^2
+// with error e, area a, weight w, normal n and sensitivity g of each observation, by conjugate gradients; the exact
+// solution of each chain is the preconditioner. mu follows from the smoothing length and the local mean of w.
 #include <algorithm>
 #include <span>
 #include <vector>
@@ -10,15 +14,15 @@
 
 namespace camber::compensate {
 
-/// One piece of surface and the place of the path that made it.
+/// One piece of surface, its error, and the place of the path that made it.
 struct Observation {
   ShiftPath::PointInterval place;
   Vec3 normal = Vec3::UnitZ();  ///< outward
   double error_mm = 0;
   double area_mm2 = 0;
-  double gain = 1;                     ///< by how much the error changes with the shift along the normal
-  double weight = 1;                   ///< of its area in the fit
-  Vec3 from_centre_mm = Vec3::Zero();  ///< from the centre of the cutter's corner (its tip, if that is sharp)
+  double gain = 1;                     ///< change of the error with the shift along the normal
+  double weight = 1;                   ///< weight of its area in the fit
+  Vec3 from_centre_mm = Vec3::Zero();  ///< position from the centre of the cutter's corner (its tip, if that is sharp)
   bool at_tip = false;                 ///< on the axis of a round tip, where the cutting speed is almost zero
   bool own = true;                     ///< the place is the one that cut it
   bool foreign = false;                ///< made by one row on the nominal path, cut by another
@@ -30,14 +34,14 @@ struct FitShiftOptions {
   double smoothing_mm = 0.2;  ///< features of the shift shorter than this along the path are smoothed
   double decay_mm = 10;       ///< without surface to correct, the shift decays over this length
   double max_shift_mm = 0.1;
-  /// One per point of the path: mu between it and the next is larger by this factor; empty: 1.
+  /// Factor on mu between each point of the path and the next; empty: 1.
   std::span<const double> stiffness{};
   std::span<const RowLink> links{};          ///< between rows
   std::span<const double> link_stiffness{};  ///< one per link, as `stiffness`
 };
 
-/// What a grid of these voxels can tell of a shift: on a coarser one a shorter feature follows the scatter of its
-/// points.
+/// Returns the length of the shortest feature of a shift that a grid of these voxels resolves. A shorter one would
+/// follow the scatter of its points.
 constexpr double smoothing_mm(double voxel_mm) { return std::max(0.2, 2.5 * voxel_mm); }
 
 /// Shifts that minimize

@@ -29,7 +29,7 @@ void add(std::uint64_t& hash, std::string_view text) {
   mix(hash, kEnd);
 }
 
-/// What every control accepts within a comment.
+/// Replaces characters that not every control accepts within a comment.
 std::string plain(std::string text) {
   for (char& c : text) {
     const auto u = static_cast<unsigned char>(c);

@@ -1,5 +1,5 @@
 #pragma once
-// Header comment of the emitted program.
+// Writes the header comment of the emitted program (--header, --header-hash).
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,7 +15,7 @@ std::string header_lines(const machine::Job& job, const CompensationResult& resu
 
 /// 16 hexadecimal digits of a text (FNV-1a, 64 bits; distinguishes versions, not cryptographic).
 std::string hash_of(std::string_view text);
-/// The same of a text that comes in pieces.
+/// Hashes a text that comes in pieces.
 class RunningHash {
  public:
   RunningHash();

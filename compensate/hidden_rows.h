@@ -1,5 +1,5 @@
 #pragma once
-// Rows of which the surface shows nothing, because a neighbouring row cuts deeper.
+// Hidden rows: rows of which the surface shows nothing, because a neighbouring row cuts deeper.
 #include <vector>
 
 #include "compensate/move_map.h"
@@ -8,13 +8,13 @@
 
 namespace camber::compensate {
 
-/// By how much the tool is off the programmed path (servo lag, corner rounding, the shift itself), one per point of
+/// Returns how far the tool is off the programmed path (servo lag, corner rounding, the shift itself), one per point of
 /// `path`, mm: the mean over the stamps near it. `map`: from the moves of `emitted` to those of `given`.
 std::vector<Vec3> path_offsets(const ShiftPath& path, const simulate::SimulatedProgram& given,
                                const simulate::SimulatedProgram& emitted, const MoveMap& map);
 
-/// Whether two places of a path lie in different rows: of different chains, or much farther apart along the path than
-/// across. `path` must outlive the object.
+/// Returns whether two places of a path lie in different rows: in different chains, or much farther apart along the
+/// path than across. `path` must outlive the object.
 class Rows {
  public:
   explicit Rows(const ShiftPath& path);

@@ -1,6 +1,5 @@
 #pragma once
-// How far a feed may be lowered: to a fraction of the programmed one, or to what the control takes a corner with
-// anyway.
+// Least feed: a fraction of the programmed feed, or the speed at which the control passes a corner anyway.
 #include <vector>
 
 #include "compensate/shift_path.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The state of a compensation while its rounds run. compensate.cpp is the order of the steps; the steps are in
+// State of a compensation while its rounds run. compensate.cpp has the order of the steps; the steps are in
 //   loop_start.cpp   the program as given: its error, what of it is compensated
 //   loop_rounds.cpp  rounds of shifts, and what is kept of each
 //   loop_levers.cpp  lower feeds and second cuts, within a machine time
@@ -34,7 +34,7 @@ struct Version {
   std::vector<bool> first_cuts;     ///< one per move: of a run that is cut again; empty: none
   std::optional<ShiftPath> path;
   std::optional<Sensitivity> sensitivity;
-  std::vector<double> stiffness;     ///< of the path, one per point
+  std::vector<double> stiffness;     ///< stiffness of the path, one per point
   double free_angle_growth_rad = 0;  ///< largest, before the path was made stiffer there
   std::vector<RowLink> links;
   std::optional<Splits> splits;
@@ -44,8 +44,8 @@ struct Version {
   bool feeds_stuck = false;                     ///< a lower feed brought nothing
   std::vector<std::size_t> passes;              ///< runs that are cut twice
   std::vector<std::uint32_t> moves;             ///< this version's, one per move of the given program; empty: the same
-  std::optional<nc::RepeatedText> repeated{};   ///< of the given program
-  std::shared_ptr<const Trial> best_shifted{};  ///< of the rounds without lower feeds
+  std::optional<nc::RepeatedText> repeated{};   ///< text of the given program with runs repeated
+  std::shared_ptr<const Trial> best_shifted{};  ///< best of the rounds without lower feeds
 
   // While it is the active one, the set-up and the job have these.
   simulate::SimulatedProgram program;
@@ -61,12 +61,12 @@ class Loop {
   void start(CompensationResult& out);
   /// Rounds of shifts from the last trial on.
   void converge(CompensationResult& out);
-  /// What no shift takes away: lower feeds and second cuts, rung by rung of machine time, until the tolerance is kept;
-  /// with a budget its least error.
+  /// Uses lower feeds and second cuts for what no shift removes, step by step of machine time, until the tolerance is
+  /// kept; with a budget its least error.
   void spend_time(CompensationResult& out);
-  /// Where the best round's surface lies deeper than the limit, further rounds lift the path there.
+  /// Runs rounds that lift the path where the best round's surface lies deeper than the limit.
   void stay_out_of_part(CompensationResult& out);
-  /// What is written: the best round that keeps the limits; the given program where none is better than that.
+  /// Takes the best round that keeps the limits; the given program where none is better.
   void choose(CompensationResult& out);
   void finish(CompensationResult& out);
   /// The other grid and the uncertainty; the text last, since its header may tell of them.
@@ -78,12 +78,12 @@ class Loop {
 
   bool has(machine::Lever lever) const { return job_.compensation.has(lever); }
   double tolerance_mm() const { return job_.compensation.half_width_um() / 1000; }
-  /// Where the control stops at every corner, a split would be a stop: the feed falls to nothing there, and the mark
-  /// that this leaves is a new error, which the next round answers with new splits.
+  /// Decides on splits. Where the control stops at every corner, a split would be a stop: the feed falls to nothing
+  /// there, and the mark that this leaves is a new error, which the next round answers with new splits.
   double spacing_mm() const;
   FitShiftOptions fit_options(std::span<const double> stiffness, std::span<const RowLink> links,
                               std::span<const double> link_stiffness) const;
-  /// Of the path with all its points, by which errors are judged.
+  /// The path with all its points, by which errors are judged.
   FitShiftOptions fit_options() const;
   std::function<void(double)> progress(const std::string& what) const {
     return simulate::progress_of(options_.progress, what);
@@ -144,28 +144,28 @@ class Loop {
   Diagnostics& diagnostics_;
   const CompensateOptions& options_;
   simulate::Setup setup_;
-  TrialRunner trials_;  ///< of the active version
+  TrialRunner trials_;  ///< trials of the active version
   std::vector<std::unique_ptr<Version>> versions_;
-  std::size_t active_ = 0;  ///< whose program the set-up has
+  std::size_t active_ = 0;  ///< index of the version whose program the set-up has
   Version* now_ = nullptr;  ///< versions_[active_]
 
-  double share_ = 1;                                    ///< of a step that is taken; less after over-corrections
-  std::vector<Observation> expected_;                   ///< for the first round; empty: as observed
+  double share_ = 1;                                    ///< fraction of a step taken; less after over-corrections
+  std::vector<Observation> expected_;                   ///< observations for the first round; empty: as observed
   std::shared_ptr<const Trial> last_, best_, allowed_;  ///< allowed_: the best one that keeps the limits
   std::shared_ptr<const Trial> given_trial_;
   std::size_t allowed_index_ = 0;
   std::vector<RoundFigures> figures_;  ///< one a round
   std::vector<bool> reach_;
   double depth_limit_um_ = 0;
-  std::size_t first_round_ = 0;                                 ///< of the active version
+  std::size_t first_round_ = 0;                                 ///< first round of the active version
   bool too_slow_ = false;                                       ///< runs were not cut twice for want of time
-  double allowance_mm_ = 0;                                     ///< that first cuts leave
+  double allowance_mm_ = 0;                                     ///< allowance that first cuts leave
   double given_s_ = 0;                                          ///< machine time of the given program
   double allowed_s_ = std::numeric_limits<double>::infinity();  ///< machine time
   Stop ended_ = Stop::rounds;                                   ///< why the rounds ended
   Observed first_observed_;                                     ///< of the given program
-  double free_correctable_um_ = 0;                              ///< of the best round before the guard
-  std::size_t free_round_ = 0;                                  ///< that round
+  double free_correctable_um_ = 0;                              ///< correctable, best round before the guard
+  std::size_t free_round_ = 0;                                  ///< number of that round
   std::shared_ptr<const Emitted> free_;                         ///< its program
 };
 

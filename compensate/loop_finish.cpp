@@ -54,7 +54,7 @@ Stop Loop::verdict(const CompensationResult& out) const {
   return guarded ? Stop::depth_limit : ended_;
 }
 
-/// Of stamps of the emitted program.
+/// Returns the lines of stamps of the emitted program.
 std::vector<ProgramLine> Loop::lines_of(const Trial& trial, std::span<const std::int32_t> stamps) const {
   const SimulatedProgram& program = trial.emitted ? trial.emitted->program : setup_.program;
   std::vector<std::uint32_t> given_of;
@@ -76,7 +76,7 @@ std::vector<ProgramLine> Loop::lines_of(const Trial& trial, std::span<const std:
   return out;
 }
 
-/// From which value on each limit that the best round has met would not bind.
+/// Returns, for each limit that the best round met, the value from which it would not bind.
 std::vector<BindingLimit> Loop::binding_limits(const CompensationResult& out) {
   const machine::CompensationSettings& asked = job_.compensation;
   const Round& best = out.rounds[out.best];

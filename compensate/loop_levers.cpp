@@ -88,7 +88,7 @@ void Loop::step_with_feeds(CompensationResult& out, double percent) {
 
 // --- second cuts ----------------------------------------------------------------------------------------------------
 
-/// Of the given program, which is active.
+/// Returns the runs with what the best shifts leave of each. Requires the given program to be active.
 std::vector<PassRun> Loop::runs_after_shifts() {
   const Trial& base = *now_->best_shifted;
   now_->path->set_shifts(base.shifts);
@@ -120,7 +120,7 @@ bool Loop::cut_twice(CompensationResult& out, double percent) {
   return false;
 }
 
-/// Its rounds; the better one of its best round and the best one so far stays the best one, with its version active.
+/// Runs the rounds of a version. The better of its best round and the best so far stays, with its version active.
 void Loop::compensate_version(std::unique_ptr<Version> version, CompensationResult& out, double percent) {
   const std::shared_ptr<const Trial> best = best_;
   const std::size_t best_round = out.best;

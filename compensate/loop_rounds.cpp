@@ -24,7 +24,7 @@ constexpr double kLeftOver = 0.25;       // of the tolerance: what a shift can s
 constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
 constexpr double kLateSplit_mm = 0.002;  // ... a later one this
 
-/// Places along the path where the feed fraction changes.
+/// Counts the places along the path where the feed fraction changes.
 std::size_t count_feed_changes(const ShiftPath& path) {
   std::size_t out = 0;
   for (const Chain& chain : path.chains()) {
@@ -100,8 +100,8 @@ void Loop::stay_out_of_part(CompensationResult& out) {
   }
 }
 
-/// Asks for lifts until the shifts that they lead to are expected to keep the limit. False: no shift brings the surface
-/// nearer to it, as where the shifts are at the largest one.
+/// Asks for lifts until the shifts that follow are expected to keep the limit. Returns false if no shift brings the
+/// surface nearer to it, as where the shifts are at the largest one.
 bool Loop::ask_for_lifts(Guard& guard, double deepest_um) {
   const Observed& observed = last_->observed;
   std::vector<Observation> gains = observed.points;
@@ -164,7 +164,7 @@ void Loop::step(CompensationResult& out, double fraction, const Guard* guard, co
   record(out, round);
 }
 
-/// From the path's shifts; again with a stiffer path where it turns by more than the bound.
+/// Emits the path's shifts, and again with a stiffer path where it turns by more than the bound.
 void Loop::fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round,
                         Trial& next) {
   ShiftPath& path = *now_->path;
@@ -199,7 +199,7 @@ void Loop::fit_and_emit(const std::vector<Observation>& observations, double fra
   round.largest_shift_mm = path.largest_shift_mm();
 }
 
-/// With the path's shifts and feeds.
+/// Predicts the program with the path's shifts and feeds.
 void Loop::predict_trial(Trial& trial, const std::string& what) {
   trial.version = active_;
   trial.shifts = now_->path->shifts();
@@ -220,7 +220,7 @@ std::vector<Observation> Loop::wanted_of(const Observed& observed, const Guard* 
   return out;
 }
 
-/// Where the shifts that the path could take with all its points ask for it; a late one must be worth more.
+/// Splits lines where the shifts of the unrestricted path ask for it; a late split must be worth more.
 void Loop::choose_splits(const std::vector<Observation>& observations, Fit* fit) {
   ShiftPath free = *now_->path;
   fit(free, observations, fit_options());
@@ -278,8 +278,8 @@ bool Loop::done(const CompensationResult& out, const StepModel& model) {
   return stalled || static_cast<int>(made) > c.max_rounds;
 }
 
-/// Whether the best round, which is not within tolerance, is expected to be with the fraction `effect` of what shifts
-/// can still take away taken away.
+/// Returns whether the best round, which is not within tolerance, is expected to come within it with the fraction
+/// `effect` of what shifts can still take away taken away.
 bool Loop::would_be_within(double effect) {
   const Observed& observed = best_->observed;
   if (effect <= 0 || within_tolerance(figures_of(*best_), job_.compensation)) return false;

@@ -22,13 +22,13 @@ namespace {
 constexpr double kSpacing_mm = 0.4;  // between points of a long line
 constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
 
-/// No default lets the tool go deeper than the model bends it, or than the stock is thick.
+/// Largest default depth limit: what the model can deflect, or the thickness of the stock.
 double deepest_limit_um(const removal::Stock& blank) {
   const Vec3 size = blank.max_mm() - blank.min_mm();
   return 1000 * std::min(removal::DeflectedEngager::kMaxDeflection_mm, size.minCoeff());
 }
 
-/// Where the blank has an allowance, the first of two cuts must find some of it.
+/// Checks that the first of two cuts finds material where the blank has an allowance.
 void check_allowance(const machine::Job& job, Diagnostics& diagnostics) {
   const double asked_mm = job.compensation.pass_allowance_mm, blank_mm = job.stock.allowance_mm;
   if (blank_mm <= 0 || asked_mm < blank_mm) return;
@@ -42,7 +42,7 @@ void check_allowance(const machine::Job& job, Diagnostics& diagnostics) {
        {}});
 }
 
-/// What is known to be refused is refused before the long work.
+/// Refuses what is known to be wrong before the long work begins.
 void check_given(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
   const Finishing early = find_finishing(job, program, {});
   if (early.operations.size() == 1 || job.compensation.operations.given())

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kDropped = 10;  // where the chosen runs take too long, one in so many is left as it is
 
-/// Without the run that holds the given program's move, or the last one before it.
+/// Removes the run that contains the given program's move, or the last run before it.
 std::vector<std::size_t> without_run_at(const std::vector<PassRun>& runs, std::vector<std::size_t> chosen,
                                         std::uint32_t move) {
   auto last = chosen.begin();
@@ -26,7 +26,7 @@ std::vector<std::size_t> without_run_at(const std::vector<PassRun>& runs, std::v
   return chosen;
 }
 
-/// Without some of those that have the least error.
+/// Removes some of the runs with the least error.
 std::vector<std::size_t> without_least(const std::vector<PassRun>& runs, std::vector<std::size_t> chosen) {
   std::ranges::stable_sort(chosen, [&](std::size_t a, std::size_t b) { return runs[a].left_mm > runs[b].left_mm; });
   chosen.resize(chosen.size() - (chosen.size() + kDropped - 1) / kDropped);
@@ -95,7 +95,8 @@ void Loop::warn_of_run(std::uint32_t block, const std::string& why, const char* 
                                           fmt::format("the cuts here are made once: the moves {}", why), check));
 }
 
-/// What a version takes over from the given program, which is active. `moves`: one per move of the given program.
+/// Fills in what a version takes over from the given program, which is active. `moves`: one per move of the given
+/// program.
 void Loop::fill_moves(const std::vector<std::uint32_t>& moves, Version& out) const {
   const std::size_t count = out.program.moves.moves.size();
   out.moves = moves;

@@ -1,5 +1,5 @@
 #pragma once
-// Correction of the model by points measured on a part: one scale of the deflection.
+// Corrects the model by points measured on a part: fits one scale of the deflection.
 #include <string>
 #include <vector>
 
@@ -23,7 +23,7 @@ std::vector<MeasuredPoint> read_measured(const std::string& path);
 
 struct MeasuredFit {
   double scale = 1;                            ///< scale of the deflection: larger forces or a more compliant tool
-  double std_error = 0;                        ///< from the points' scatter about the fit
+  double std_error = 0;                        ///< standard error from the points' scatter about the fit
   std::size_t points = 0, left_out = 0;        ///< left out: no machined surface of the job there
   double rms_before_um = 0, rms_after_um = 0;  ///< measured less predicted, with the scale 1 and the fitted one
   int predictions = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Which move of the given program a move of the emitted one stands for: nc/move_map.h.
+// Maps moves of the emitted program to those of the given one (nc/move_map.h).
 #include "nc/move_map.h"
 
 namespace camber::compensate {

@@ -1,5 +1,5 @@
 #pragma once
-// Shifts that the emitter could not write, said to the user.
+// Warnings for shifts that the emitter could not write.
 #include <span>
 
 #include "base/diagnostics.h"
@@ -7,7 +7,7 @@
 
 namespace camber::compensate {
 
-/// One warning [not-emitted] for each kind of block, at its first line, with the lines (at most eight of them).
+/// Adds one warning [not-emitted] for each kind of block, at its first line, with the lines (at most eight of them).
 void warn_of_not_emitted(const nc::Program& program, const nc::Interpretation& moves,
                          std::span<const nc::EditNotMade> not_made, Diagnostics& diagnostics);
 

@@ -15,7 +15,7 @@ namespace camber::compensate {
 /// A run, what a second cut of it takes, and how much it could bring.
 struct PassRun {
   nc::CutRun run;
-  double time_s = 0;   ///< of the run and the way back
+  double time_s = 0;   ///< time of the run and the way back
   double left_mm = 0;  ///< 95th percentile of what the best shift leaves of the error on the surface that it makes
 };
 
@@ -29,11 +29,11 @@ std::vector<PassRun> pass_runs(const simulate::SimulatedProgram& given, const st
                                const ShiftPath& path, std::span<const Observation> observations,
                                std::span<const double> left_mm);
 
-/// Indices of the runs to cut twice, ascending: those with the greatest error first, each while it fits into
-/// `budget_s` and leaves more than `wanted_mm`.
+/// Returns the indices of the runs to cut twice, ascending: those with the greatest error first, each while it fits
+/// into `budget_s` and leaves more than `wanted_mm`.
 std::vector<std::size_t> choose_passes(std::span<const PassRun> runs, double budget_s, double wanted_mm);
 
-/// What the first of two cuts leaves, mm, where the job gives nothing: the depth by which the best single cut
+/// Returns the allowance of the first of two cuts, mm, where the job gives none: the depth by which the best single cut
 /// undercuts the surface and half of its tolerance on top, so that the second one cuts everywhere; at least 20 um, a
 /// chip that an edge cuts rather than rubs.
 double pass_allowance_mm(double gouge_depth_mm, double tolerance_mm);
@@ -42,8 +42,8 @@ double pass_allowance_mm(double gouge_depth_mm, double tolerance_mm);
 nc::RepeatedText with_first_cuts(const simulate::SimulatedProgram& given, std::span<const PassRun> runs,
                                  std::span<const std::size_t> chosen, const nc::Emission& first_cuts);
 
-/// For each move of the given program the one of the repeated one that its line makes. Nothing where some of them is
-/// another move there (start, end, feed, modal state), `wrong` then the first one.
+/// Returns, for each move of the given program, the move of the repeated one that its line makes; nothing where some of
+/// them is another move there (start, end, feed, modal state), `wrong` then the first one.
 std::optional<std::vector<std::uint32_t>> moves_in_repeated(const nc::Interpretation& given,
                                                             const nc::Interpretation& repeated,
                                                             const nc::RepeatedText& text, std::uint32_t& wrong);

@@ -1,5 +1,5 @@
 #pragma once
-// Quality of the emitted path: growth of the angles between blocks, short blocks.
+// Measures the emitted path: growth of the angles between blocks and from row to row, and short blocks.
 #include <span>
 #include <vector>
 
@@ -11,9 +11,9 @@ namespace camber::compensate {
 
 struct PathQuality {
   double angle_growth_rad = 0;           ///< largest growth of an angle between two blocks
-  std::size_t angle_line = 0;            ///< of the emitted program; 0: it grows nowhere
-  double shortest_mm = 0;                ///< of the blocks that came out of a split; 0: none was split
-  std::size_t too_short = 0;             ///< of them, shorter than the control can process: F T_b
+  std::size_t angle_line = 0;            ///< line of the emitted program; 0: no angle grows
+  double shortest_mm = 0;                ///< shortest block made by a split; 0: none was split
+  std::size_t too_short = 0;             ///< number of them shorter than the control can process, F T_b
   std::vector<MoveMap::MovePlace> over;  ///< places of the given program where the angle grows by more than the bound
 };
 
@@ -24,7 +24,7 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
                          double angle_bound_rad);
 inline constexpr double kShort_mm = 0.02;
 
-/// How the shift changes from a row to the next: the 95th percentile and the largest |difference| between each point
+/// Returns how the shift changes from row to row: the 95th percentile and the largest |difference| between each point
 /// of the path and the nearest one that is not its neighbour along the path, within `reach_mm`.
 struct RowSteps {
   double p95_mm = 0, max_mm = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The emitted program predicted again under other conditions: another grid, other parameters.
+// Predicts the emitted program again under other conditions: another grid, other parameters.
 #include <string>
 #include <vector>
 
@@ -15,7 +15,7 @@ struct Recheck {
   double voxel_mm = 0;
   removal::ErrorFigures before_um, after_um;  ///< judged, of the surface in reach
   ErrorSplit split_before, split_after;
-  double deepest_um = 0;  ///< into the part, compensated moves, of the emitted program
+  double deepest_um = 0;  ///< depth into the part, compensated moves of the emitted program
 };
 
 struct EmittedPair {
@@ -23,7 +23,7 @@ struct EmittedPair {
   const Emitted* free = nullptr;  ///< the best one before the guard; null: the guard did nothing
 };
 
-/// What the target is swept with, and where its moves are in the program that the path is of.
+/// The target program, and where its moves are in the program of the path.
 struct RecheckTarget {
   const simulate::SimulatedProgram& program;
   std::vector<std::uint32_t> moves{};  ///< empty: the same
@@ -36,7 +36,7 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
                 const ShiftPath& path, const FitShiftOptions& options, const RecheckTarget& made_by,
                 const simulate::Progress& progress);
 
-/// By how much each point of the emitted program's surface (`after`) moves when a group does.
+/// Returns how much each point of the emitted surface (`after`) moves with a group of parameters.
 std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Setup& given,
                                const Emitted* emitted, const std::vector<removal::SurfacePoint>& after,
                                std::vector<std::string>& unknown, const simulate::Progress& progress);

@@ -46,7 +46,7 @@ struct Facing {
   double area = 0;
   Facing operator*(double f) const { return {normal * f, area * f}; }
   Facing operator+(const Facing& o) const { return {normal + o.normal, area + o.area}; }
-  /// One face, not a wall and the floor beside it.
+  /// Returns whether the observations lie on one face, not on a wall and the floor beside it.
   bool one() const { return normal.norm() > kOneFace * area; }
 };
 
@@ -73,7 +73,7 @@ std::vector<Facing> facing(const ShiftPath& path, std::span<const Observation> o
   return out;
 }
 
-/// Where each observation lies across its row, mm.
+/// Returns the place of each observation across its row, mm.
 std::vector<double> places_across(const ShiftPath& path, std::span<const Observation> observations,
                                   const std::vector<Facing>& faces) {
   std::vector<double> out;

@@ -1,5 +1,6 @@
 #pragma once
-// The form of the surface across a row that is constant along the row: the bow of a ball, of a wall.
+// Form across the rows: the part of the error that keeps its form along a row, as the bow that a ball or a helix
+// leaves.
 #include <span>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace camber::compensate {
 /// Over which the form is taken to stay.
 inline constexpr double kFormAlong_mm = 1.5;
 
-/// What no shift takes away, but which stays the same for millimetres along the path: of `left` (one per observation,
+/// Finds what no shift removes but stays the same for millimetres along the path: of `left` (one per observation,
 /// what the best shift of every point leaves, mm) the part that is a cubic of the place across the row,
 ///
 ///   left(l, t) ~ b0(l) + b1(l) t + b2(l) t^2 + b3(l) t^3,      t = (p - c) . (d x N),
@@ -20,9 +21,9 @@ inline constexpr double kFormAlong_mm = 1.5;
 /// with weights that fall to 1/e in 1.5 mm along the path. A grid shows a row at a few places across, others every
 /// voxel; a shift that is fitted to the error less this form does not follow which ones.
 ///
-/// Where the grid shows many points across (n within 2 smoothing_mm of path: a wall) their mean is accurate enough,
-/// and a form that changes along the path would do harm: the form is less by 1 / (1 + (n / 40)^2). Where the surface
-/// faces more than one way (a wall and its floor, a corner) it is none. One per observation.
+/// Where the grid shows many points across (n within 2 smoothing_mm of path: a wall) their mean
+/// is accurate enough, and a form that changes along the path would do harm: the form is less by 1 / (1 + (n / 40)^2).
+/// Where the surface faces more than one way (a wall and its floor, a corner) it is none. One per observation.
 std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observation> observations,
                                 const std::vector<double>& left_mm, double smoothing_mm);
 

@@ -17,7 +17,7 @@ constexpr double kDetour = 4;       // another row is much farther along the pat
 struct RowPlace {
   std::size_t chain = 0;
   Vec3 direction = Vec3::Zero();
-  double length_mm = 0;  ///< of path represented by the point
+  double length_mm = 0;  ///< length of path that the point represents
 };
 
 std::vector<RowPlace> places_of(const ShiftPath& path) {

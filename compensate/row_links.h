@@ -1,5 +1,5 @@
 #pragma once
-// Links between nodes of neighbouring rows.
+// Links nodes of neighbouring rows, so that shifts change smoothly from row to row.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -18,15 +18,15 @@ struct RowLink {
 
 enum class RowSense { same, any };
 
-/// For each point the nearest one of a row on either side, no farther than `reach_mm`; in the order of a and b. Points
-/// that are fixed are left out.
+/// Links each point to the nearest one of a row on either side, no farther than `reach_mm`; in the order of a and b.
+/// Points that are fixed are left out.
 std::vector<RowLink> row_links(const ShiftPath& path, double reach_mm, RowSense sense = RowSense::same);
 
-/// By how much the surface that the path's points span turns from row to row because of the shifts: |s_b - s_a| over
-/// the rows' distance, as an angle.
+/// Returns how much the surface spanned by the path's points turns from row to row because of the shifts: |s_b - s_a|
+/// over the rows' distance, as an angle.
 struct RowTurn {
   double max_rad = 0;
-  std::vector<std::size_t> over;  ///< indices into `links` over the bound
+  std::vector<std::size_t> over;  ///< indices of the links over the bound
 };
 RowTurn row_turn(const ShiftPath& path, std::span<const RowLink> links, double bound_rad);
 

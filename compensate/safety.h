@@ -1,5 +1,5 @@
 #pragma once
-// Safety checks of the emitted program: gouge depth and axis travel.
+// Safety of the emitted program: depth into the part and travel of the axes.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -16,19 +16,20 @@ namespace camber::compensate {
 
 /// Gouge depth: depth of the surface below the undeflected sweep of the target.
 struct Depth {
-  double deepest_um = 0;           ///< of single points; not negative
+  double deepest_um = 0;           ///< deepest single point; not negative
   double gouge_depth_p999_um = 0;  ///< 99.9 % of the surface is not deeper; compared with the depth limit
   Vec3 place_mm = Vec3::Zero();
   double over_fraction = 0;  ///< fraction of the area deeper than the tolerance
-  std::int32_t stamp = -1;   ///< that made the deepest point; -1: none
-  ProgramLine line{};        ///< its line, where it is asked for
+  std::int32_t stamp = -1;   ///< stamp that made the deepest point; -1: none
+  ProgramLine line{};        ///< line of that stamp, where it is asked for
 };
 
-/// Of the points that compensated moves made (`compensated` false: of the others), by the judged error.
+/// Returns the depth of the points that compensated moves made (`compensated` false: of the others), by the judged
+/// error.
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed& observed, double tolerance_um,
                bool compensated);
 
-/// Of all points, by the judged error; `others_mm2`: area of the surface that is not among them.
+/// Returns the depth of all points, by the judged error; `others_mm2`: area of the surface that is not among them.
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Reference reference, double others_mm2,
                double tolerance_um);
 

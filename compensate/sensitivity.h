@@ -1,5 +1,6 @@
 #pragma once
-// Local sensitivity of the error to the shift, the divisor of a Newton step.
+// Local sensitivity g of the error to the shift, by which each step is divided (Newton's method): a cutter that goes
+// deeper takes a thicker chip and deflects more.
 #include <span>
 #include <vector>
 

@@ -115,7 +115,7 @@ void ShiftPath::keep_plunges() {
 
 namespace {
 
-/// Indices of `path` that must stay so that no left-out point strays from the polyline (Douglas-Peucker).
+/// Returns the indices of `path` that must stay so that no other point strays from the polyline (Douglas-Peucker).
 void keep_strays(const std::vector<Vec3>& path, std::size_t a, std::size_t b, double tolerance,
                  std::vector<std::size_t>& kept) {
   double worst = tolerance;

@@ -1,5 +1,5 @@
 #pragma once
-// The points of a path that may be moved, and how far each is.
+// Shift path: the nodes of the program's path that may be moved, and the shift of each.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,12 +13,12 @@ namespace camber::compensate {
 /// A place on the programmed path. Shifts are linear between neighbours of a chain.
 struct ControlPoint {
   std::uint32_t move = 0;
-  double fraction = 0;  ///< of the move's length
+  double fraction = 0;  ///< fraction of the move's length
   double along_mm = 0;  ///< path length since the chain's start
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
-  double feed_fraction = 1;  ///< of the programmed feed, on the piece that ends here
-  bool fixed = false;        ///< where a rapid, a move of another operation or one that cannot be edited ends: stays
+  double feed_fraction = 1;  ///< fraction of the programmed feed, on the piece that ends here
+  bool fixed = false;        ///< stays: end of a rapid, of another operation's move or of one that cannot be edited
   /// The piece that ends here runs along Z alone, a plunge or a retract, and gets no X and Y words: its shift across is
   /// that of the point before.
   bool plunge = false;
@@ -60,10 +60,10 @@ class ShiftPath {
   /// the path without them would stray by more than tolerance_mm; an arc stays one where one passes the shifted points
   /// within it, else it becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
-  /// The same with lines split at the points that are kept (one per point) and nowhere else.
+  /// Returns the path with lines split at the points that are kept (one flag per point) and nowhere else.
   std::vector<nc::MoveEdit> edits(const std::vector<bool>& kept, double tolerance_mm) const;
 
-  /// One per point: true for the ends of moves, for every point of an arc and for what is fixed.
+  /// Returns one flag per point: true for the ends of moves, for every point of an arc and for what is fixed.
   std::vector<bool> ends_of_moves() const;
   /// Keeps the points of lines at which the feed changes.
   void keep_feed_changes(std::vector<bool>& kept) const;

@@ -1,5 +1,5 @@
 #pragma once
-// Splits of lines, and the path restricted to the freedom of those splits.
+// Splits of lines: decides where lines get more nodes, and restricts the path to them.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -42,8 +42,8 @@ class ThinPath {
 
  private:
   ShiftPath path_;
-  std::vector<ShiftPath::PointInterval> of_point_;  ///< of the whole path's points on this one
-  std::vector<std::size_t> point_;                  ///< of this path's points on the whole one
+  std::vector<ShiftPath::PointInterval> of_point_;  ///< interval on this path of each point of the whole one
+  std::vector<std::size_t> point_;                  ///< index in the whole path of each point of this one
 };
 
 }  // namespace camber::compensate

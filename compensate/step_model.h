@@ -1,5 +1,5 @@
 #pragma once
-// What another round of shifts is expected to bring.
+// Expected gain of another round of shifts: mean square m - (2 t - c t^2) R after the fraction t of a step.
 #include "compensate/error_split.h"
 
 namespace camber::compensate {

@@ -1,5 +1,5 @@
 #pragma once
-// Steps of the surface from row to row, before and after compensation.
+// Measures the steps of the surface from row to row, before and after compensation.
 #include <cstddef>
 #include <span>
 
@@ -13,7 +13,7 @@ namespace camber::compensate {
 struct SurfaceSteps {
   double before_p95_mm = 0, before_max_mm = 0;
   double after_p95_mm = 0, after_max_mm = 0;
-  double growth_rad = 0;  ///< by how much the surface turns more from row to row than before, the worst pair
+  double growth_rad = 0;  ///< additional turn of the surface from row to row, at the worst pair
   std::size_t pairs = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A trial: a shifted path, emitted, read again from its text and predicted.
+// A trial: a shifted path is emitted, read again from its text, timed, cut and judged.
 #include <functional>
 #include <memory>
 #include <string>
@@ -25,9 +25,9 @@ struct Emitted {
 };
 
 struct Trial {
-  std::size_t version = 0;  ///< of the program: 0 the given one, else one with second cuts
+  std::size_t version = 0;  ///< version of the program: 0 the given one, else one with second cuts
   std::vector<Vec3> shifts;
-  std::vector<double> fractions;               ///< of the programmed feed, one per point of the path
+  std::vector<double> fractions;               ///< fraction of the programmed feed, one per point of the path
   std::shared_ptr<const Emitted> emitted;      ///< none: the given program
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
   std::vector<simulate::StampLoad> loads;
@@ -55,13 +55,13 @@ class TrialRunner {
  public:
   TrialRunner(const machine::Job& job, const simulate::Setup& given);
 
-  /// How near the arcs that an arc becomes pass its shifted points.
+  /// Largest distance of the emitted arcs from the shifted points of an arc.
   static constexpr double kViaTolerance_mm = 0.0005;
 
   /// `splits`: points of the path at which lines are split.
   std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& splits,
                                       const std::vector<bool>& compensated) const;
-  /// Only the text, with the header.
+  /// Returns the text alone, with the header.
   nc::Emission text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
   /// Does not throw for problems that were already reported for the given program.
   simulate::Prediction predict(const simulate::SimulatedProgram& program,

@@ -13,7 +13,7 @@ namespace camber::compensate {
 
 /// One parameter with its standard error, in the unit of the file that it came from.
 struct UncertainParameter {
-  std::string name;  ///< as fit-force and fit-feed name it: "ktc_MPa", "axis.x.position_gain_per_s"
+  std::string name;  ///< name as fit-force and fit-feed write it: "ktc_MPa", "axis.x.position_gain_per_s"
   double value = 0, std_error = 0;
 };
 
@@ -21,7 +21,7 @@ struct UncertainParameter {
 struct ParameterGroup {
   std::string name;  ///< "cutting", "edge", "stiffness", "force", "drives", "limits"
   std::vector<UncertainParameter> parameters;
-  double fraction = 0;  ///< instead of parameters: a relative standard error of the whole group
+  double fraction = 0;  ///< relative standard error of the whole group, instead of parameters
 };
 
 /// A percentage ("10", "10 %"): the forces and the tool's stiffness, each uncertain by so much, two groups. Otherwise
@@ -35,7 +35,7 @@ machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::ve
 struct Band {
   struct Group {
     std::string name;
-    double rms_um = 0;  ///< of the change of the error over the surface
+    double rms_um = 0;  ///< rms change of the error over the surface
   };
   std::vector<Group> groups;
   double sigma_rms_um = 0;   ///< rms over the surface of the standard error of the error

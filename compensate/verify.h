@@ -23,14 +23,14 @@ struct Record {
   std::string given, given_hash;      ///< path of the given program, from the record's folder
   std::string job;                    ///< TOML; paths are relative to the record's folder
   double depth_limit_um = 0;
-  removal::ErrorFigures judged_um;  ///< what compensate found
+  removal::ErrorFigures judged_um;  ///< error that compensate found
   std::vector<LineRun> lines;       ///< ascending; lines that are in none of them are new
 };
 
 /// "OUT.nc.record.json".
 std::string record_path(const std::string& program);
 
-/// Of the program that was written to `output`; `job`: that it was made with.
+/// Returns the record of the program that was written to `output`; `job`: that it was made with.
 Record make_record(const machine::Job& job, const CompensationResult& result, const std::string& output);
 
 /// The record as JSON, and back. read_record throws InputError [record-format].
@@ -42,7 +42,7 @@ Record read_record(const std::string& path);
 /// compensated, only the surface of those that were is judged.
 machine::Job judging_job(const machine::Job& job, const CompensationResult& result, const std::string& output);
 
-/// Where the record of an earlier run lies: `place` is its folder or the emitted program. Throws InputError
+/// Finds the record of an earlier run: `place` is its folder or the emitted program. Throws InputError
 /// [file-missing], [record-missing], [record-several].
 std::string find_record(const std::string& place);
 
@@ -57,7 +57,7 @@ struct Verification {
   double depth_limit_um = 0;
   double unseen_mm2 = 0, border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
-  removal::ErrorFigures recorded_um;  ///< what compensate found
+  removal::ErrorFigures recorded_um;  ///< error that compensate found
   std::vector<std::string> doubts;    ///< reasons why the figures are not reliable (simulate/verdict.h)
   double machine_time_s = 0;
 };

@@ -6,8 +6,8 @@
 namespace camber::copymill {
 namespace {
 
-constexpr double kStep_mm = 0.2;  ///< at which ways are looked at
-constexpr int kDirections = 24;   ///< in which an entry from the side is looked for
+constexpr double kStep_mm = 0.2;  ///< distance of the places at which a way is checked
+constexpr int kDirections = 24;   ///< directions in which an entry from the side is tried
 
 }  // namespace
 
@@ -131,8 +131,8 @@ removal::CutterShape Approach::wide() const {
   return out;
 }
 
-/// A place at which this cutter is in air and from which the straight way to a place is free of the part. `surely`: and
-/// at which the tool can come down in rapid.
+/// Returns a place at which this cutter is in air and from which the straight way to `to` is free of the part; with
+/// `surely`, one at which the tool can come down in rapid.
 std::optional<Vec3> Approach::side_entry(const Vec3& to, const removal::CutterShape& shape, bool surely) const {
   for (const double reach : {0.5, 1.0, 1.5, 2.2}) {
     for (int k = 0; k < kDirections; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// How the tool gets to a pass and into the material.
+// Approach: moves the tool to a pass and into the material.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -15,7 +15,7 @@ struct ApproachOptions {
   double clearance_mm = 1;     ///< above and beside material; rapids keep this away
   double more_than_mm = 0.02;  ///< material of less height is not met
   double link_mm = 0;          ///< longest straight way through material from pass to pass
-  bool remembers = false;      ///< where the axis has gone, for finish()
+  bool remembers = false;      ///< keeps where the axis has gone, for finish()
 };
 
 /// Links, entries and the passes themselves. Between passes the tool stays down where the straight way is free of the
@@ -32,11 +32,12 @@ class Approach {
   Runner::Ended follow(const Pass& pass);
   /// The stretches of a pass that meet material now.
   std::vector<Pass> in_material(const Pass& pass) const;
-  /// Of a pass what the axis has not gone along since forget(), whether or not anything is seen to stand there.
+  /// Cuts the stretches of a pass that the axis has not gone along since forget(), whether or not material is seen
+  /// there.
   Runner::Ended finish(const Pass& pass);
   void forget() { ways_.clear(); }
-  /// To a closed pass that is cut from its beginning on: down through air where none of it meets material, else in a
-  /// helix along it. Begins the pass where the tool is then, or as near to that as its points allow.
+  /// Enters a closed pass that is cut from its beginning on: down through air where none of it meets material, else in
+  /// a helix along it. The pass then begins where the tool is, or as near to that as its points allow.
   Runner::Ended enter_ring(Pass& ring);
   /// Up, over what stands on the way to a place, and to its X and Y.
   Runner::Ended lift_over(const Vec3& to);
@@ -57,7 +58,7 @@ class Approach {
   bool in_air(const Vec3& from, const Vec3& to) const;
   double lift_into_air(const Vec3& tip) const;
   double lead_mm() const { return 0.2 * cut_.shape.radius_mm; }
-  /// Also gaps that are passed through in less time than the tool is lifted over, about three rapids and an entry.
+  /// Includes gaps that are passed through in less time than the tool is lifted over, about three rapids and an entry.
   double join_mm() const {
     constexpr double kLift_s = 0.3;
     return std::max({2 * cut_.shape.radius_mm, 4.0, kLift_s * cut_.operation.feed_mm_per_s});
@@ -69,7 +70,7 @@ class Approach {
   Standing& standing_;
   Runner& runner_;
   ApproachOptions options_;
-  std::vector<std::vector<Vec3>> ways_;  ///< of each cut, from where it began
+  std::vector<std::vector<Vec3>> ways_;  ///< way of each cut, from its beginning
 };
 
 }  // namespace camber::copymill

@@ -1,5 +1,5 @@
 #pragma once
-// Above what height rapids meet nothing.
+// Clear height: a height above which rapids meet nothing, cell by cell, kept over all operations.
 #include <vector>
 
 #include "base/geometry.h"
@@ -25,13 +25,13 @@ class ClearHeight {
   void lower(const removal::CutterShape& shape, const Vec3& tip);
   /// The lowest place of the tip at which the cutter certainly meets nothing; kAir where there is nothing.
   double lowest_clear_tip_mm(const removal::CutterShape& shape, const Vec2& axis) const;
-  /// Of all cells that a rectangle touches; kAir where there are none.
+  /// Returns the greatest height of all cells that a rectangle touches; kAir where there are none.
   double over_mm(const Vec2& min, const Vec2& max) const;
   double cell_mm() const { return grid_.step_mm; }
 
  private:
   struct Row {
-    int j, first, last;  ///< of the cells whose middles are within a disc
+    int j, first, last;  ///< cells of row j whose middles are within a disc
   };
   template <class Visit>
   void rows(const Vec2& axis, double radius_mm, Visit visit) const;

@@ -51,7 +51,7 @@ double standing_cell_mm(const removal::Stock& stock, const machine::Tool& tool) 
   return std::max({std::clamp(tool.diameter_mm / 40, 0.1, 0.5), std::sqrt(size.x() * size.y() / kMaxCells)});
 }
 
-/// What an operation needs of the part; kept to judge what is left in the end.
+/// The part as an operation needs it; kept to judge what is left in the end.
 struct Tooling {
   Tooling(const TriangleMesh& part, const machine::CopyOperation& operation, const machine::Tool& tool,
           const removal::Stock& stock)
@@ -68,7 +68,7 @@ struct Tooling {
   Cut cut;
   AxisRegion region;
   double lowest_mm, highest_mm;
-  std::optional<TipField> contact, field;  ///< without and with the allowance; none for holes
+  std::optional<TipField> contact, field;  ///< fields without and with the allowance; none for holes
 };
 
 [[noreturn]] void fail_on_no_place(const Cut& cut) {

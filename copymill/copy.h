@@ -1,5 +1,29 @@
 #pragma once
-// Virtual copy milling: paths made from the part itself while the tool cuts, tick by tick.
+// Virtual copy milling: makes paths from the part itself while the tool cuts, tick by tick. This is the door of
+// copymill/.
+//
+// Overview
+//
+// A virtual tracer of the tool's shape follows the part's model, and the stock that stands at that moment decides where
+// there is something to cut. For each operation of the job:
+//
+// 1. tip_field        the lowest height of the tip over (x, y): the part's offset surface, with the allowance. Every
+// path
+//                     stays at or above it. region and level_region say where the axis may be, outline traces borders.
+// 2. levels, passes   operation lays passes: loops at equal distances from walls (level_region, loop_order), rows, rows
+//                     with a scallop height, or holes; cut_levels goes from level to level. standing has the material
+//                     that the planner sees, clear_height an upper bound of all that can stand.
+// 3. approach         gets the tool to a pass and into the material: from the side, along the pass, straight down.
+//                     slotting replaces full cuts by trochoids (trochoid) where the load asks for it.
+// 4. runner           runs passes as lines and arcs (path_piece) in ticks of the control (motion, speed_ahead), cuts
+// each
+//                     tooth passing in the stock, and writes the program (program_writer).
+// 5. load_follower    reads the load of each passing (simulate/load_probe) and sets feed and depths by load_rule;
+//                     felt_hardness remembers where the material was harder than expected.
+// 6. part_check       says how deep the path goes into the part and what is left on it.
+//
+// Units: mm, s, N, rad; positions are tips in the frame of the part. docs/copy.md and docs/copy-load.md have the
+// reasons, the rule of the load and the figures.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -24,11 +48,11 @@ struct Tick {
   Vec3 tip_mm = Vec3::Zero();
   double feed_mm_per_s = 0;  ///< actual
   double load_N = 0;         ///< lateral force of the last tooth passing; 0 in air
-  double processor_ms = 0;   ///< that the calling thread has spent on this tick
+  double processor_ms = 0;   ///< processor time of the calling thread in this tick
 };
 
 struct CopyOptions {
-  /// Of lines and arcs of the program from the path.
+  /// Largest distance of the program's lines and arcs from the path.
   double tolerance_mm = 0.002;
   /// Called with every tick, in order; may be empty.
   std::function<void(const Tick&)> stream{};
@@ -44,7 +68,7 @@ struct CopyOptions {
   std::optional<double> stop_after_s{};
 };
 
-/// What one operation did.
+/// Summary of one operation.
 struct OperationSummary {
   int tool = 0;
   machine::CopyMode mode = machine::CopyMode::contour_line;
@@ -56,7 +80,7 @@ struct OperationSummary {
   /// Cutting found nothing: all that the operation may take was gone.
   bool nothing_left = false;
   LoadFigures load;
-  std::vector<Change> changes;  ///< of feed and depths, in order of time
+  std::vector<Change> changes;  ///< changes of feed and depths, in order of time
 };
 
 struct CopyResult {
@@ -68,7 +92,7 @@ struct CopyResult {
   std::size_t ticks = 0, blocks = 0;
   double tick_mean_ms = 0, tick_max_ms = 0;  ///< computing time
   double removed_mm3 = 0;
-  bool stopped = false;            ///< by CopyOptions::stop_after_s
+  bool stopped = false;            ///< ended by CopyOptions::stop_after_s
   LeftMaterial left;               ///< on the part where the operations' tools could touch it
   double path_depth_um = 0;        ///< greatest, of the milling path in the part, by the exact offset surface
   Vec3 deepest_mm = Vec3::Zero();  ///< the tip's place there

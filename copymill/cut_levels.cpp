@@ -53,7 +53,7 @@ std::vector<double> loop_distances(const LevelRegion& region, int component, dou
   return out;
 }
 
-/// Whether material that is not the part stands in the region, looked at on a coarse grid.
+/// Returns whether material that is not the part stands in the region, looked at on a coarse grid.
 bool stands_over_part(const Workplace& place, double bottom_mm) {
   constexpr int kAcross = 100;
   constexpr double kNeedle_mm = 0.01, kStands_mm = 0.05;
@@ -99,7 +99,7 @@ class LevelCutter {
     return Runner::Ended::done;
   }
 
-  /// From boss to boss and corner to corner, not from distance to distance.
+  /// Cuts loops from boss to boss and corner to corner, not from distance to distance.
   Runner::Ended cut_in_order(const LevelRegion& region, int component, const std::vector<double>& distances) {
     LoopOrder order;
     // Along walls as asked for; "both" turns what lies farther inside.
@@ -212,7 +212,7 @@ class LevelCutter {
     return finish_walls(region.z_mm());
   }
 
-  /// Those down to a height; lower ones wait where passes have been planned anew above them.
+  /// Cuts the levels down to a height; lower ones wait where passes have been planned anew above them.
   Runner::Ended finish_walls(double z) {
     std::vector<Pass> now;
     const auto waits = std::ranges::partition(walls_, [&](const Pass& p) { return p.points.front().z() < z; });

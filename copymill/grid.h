@@ -1,5 +1,5 @@
 #pragma once
-// A grid of points in X and Y.
+// A grid of values at points in X and Y.
 #include <cmath>
 #include <cstddef>
 
@@ -8,7 +8,7 @@
 namespace camber::copymill {
 
 struct Grid {
-  Vec2 origin = Vec2::Zero();  ///< of point (0, 0)
+  Vec2 origin = Vec2::Zero();  ///< position of point (0, 0)
   double step_mm = 1;
   int nx = 0, ny = 0;
 
@@ -28,7 +28,7 @@ struct Grid {
   }
   bool holds(int i, int j) const { return i >= 0 && j >= 0 && i < nx && j < ny; }
   Vec2 at(int i, int j) const { return origin + step_mm * Vec2(i, j); }
-  /// In steps from the origin.
+  /// Position in steps from the origin.
   Vec2 cells(const Vec2& p) const { return (p - origin) / step_mm; }
 };
 

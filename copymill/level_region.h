@@ -1,5 +1,5 @@
 #pragma once
-// Where the tip may be at one level, and loops in it at any distance from the part's walls.
+// Level region: where the tip may be at one level, and loops in it at any distance from the part's walls.
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -15,14 +15,14 @@ namespace camber::copymill {
 /// The tip field at the points of a grid that covers a region and a margin.
 struct SampledTips {
   SampledTips(const TipField& field, const AxisRegion& region, double step_mm);
-  /// Whether a point lies in the region at a level.
+  /// Returns whether a point lies in the region at a level.
   bool holds(std::size_t point, double z_mm) const;
 
   const TipField& field;
   const AxisRegion& region;
   Grid grid;
   std::vector<double> lowest_mm;
-  std::vector<char> in_region;  ///< at some level
+  std::vector<char> in_region;  ///< whether the point is in the region at some level
 };
 
 /// The points of the region at which the tip may stand at height z: the set {field <= z}, bounded by walls of the part
@@ -37,7 +37,7 @@ class LevelRegion {
   bool empty() const { return outlines_.empty(); }
   double z_mm() const { return z_; }
   bool contains(const Vec2& p) const { return inside_(p); }
-  /// Whether the straight way is inside, looked at every half step of the grid.
+  /// Returns whether the straight way is inside, looked at every half step of the grid.
   bool holds_line(const Vec2& a, const Vec2& b) const;
   /// True where walls of the part bound the region somewhere; distances are from these. Else from the region's border.
   bool walled() const { return walled_; }

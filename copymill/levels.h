@@ -1,5 +1,5 @@
 #pragma once
-// The heights at which roughing cuts.
+// Levels: the heights at which roughing cuts.
 #include <vector>
 
 #include "base/geometry.h"
@@ -12,8 +12,8 @@ namespace camber::copymill {
 /// within a micrometre together. A tip that goes to such a height touches the face and does not go into it.
 std::vector<double> level_floors(const TriangleMesh& part, const AxisRegion& region, double least_mm2);
 
-/// From the top down to the bottom, each floor (raised by the allowance) on the way included: levels between two of
-/// these are evenly spaced, no more than the axial depth apart.
+/// Returns the levels from the top down to the bottom, each floor (raised by the allowance) on the way included: levels
+/// between two of these are evenly spaced, no more than the axial depth apart.
 class Levels {
  public:
   Levels(double top_mm, double bottom_mm, std::vector<double> floors_mm);
@@ -34,7 +34,7 @@ struct BoxLevels {
   Levels even;
   std::vector<double> floors_mm;  ///< descending
 
-  /// Those below a level, down to another one.
+  /// Returns the levels below one, down to another one.
   std::vector<double> floors_between(double above_mm, double level_mm) const;
 };
 

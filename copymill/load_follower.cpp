@@ -12,14 +12,14 @@ namespace {
 
 /// Coarser than a prediction's: a tick has half a millisecond. 2 degrees lose about a hundredth of a peak.
 constexpr double kEnvelopeStep_mm = 0.2, kRotationStep_rad = 2 * kPi / 180;
-constexpr double kFeedSteps = 50;                                 ///< of the nominal feed
-constexpr double kUpBelow = 0.88, kAim = 0.94;                    ///< of the target
-constexpr double kUpStep = 0.5;                                   ///< of the nominal feed; no step leads over the aim
+constexpr double kFeedSteps = 50;               ///< feeds are whole fractions 1 / kFeedSteps of the nominal feed
+constexpr double kUpBelow = 0.88, kAim = 0.94;  ///< fractions of the target
+constexpr double kUpStep = 0.5;                 ///< fraction of the nominal feed; no step leads over the aim
 constexpr double kFromBand = 0.80, kToBand = 1.05, kNever = 1.2;  // of the target
-constexpr double kHeldBack = 0.9;                                 ///< of the commanded feed
-constexpr double kCellShare = 0.1;                                ///< of the radius: columns that remember hardness
-constexpr double kTellsHardness = 0.1;                            ///< of the target: less expected load tells nothing
-constexpr double kCutting = 0.01;                                 ///< of the target: less is air
+constexpr double kHeldBack = 0.9;                                 ///< fraction of the commanded feed
+constexpr double kCellShare = 0.1;      ///< fraction of the radius: width of the columns that remember hardness
+constexpr double kTellsHardness = 0.1;  ///< fraction of the target: a smaller expected load says nothing
+constexpr double kCutting = 0.01;       ///< fraction of the target: less counts as air
 
 constexpr double kRidge_mm = 0.0003;  ///< between stamps that are swept
 

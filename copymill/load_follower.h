@@ -1,5 +1,5 @@
 #pragma once
-// The load of the cut, tooth passing by tooth passing, and the feed and depths that follow it.
+// Load follower: reads the load of the cut, tooth passing by tooth passing, and sets feed and depths.
 #include <optional>
 #include <vector>
 
@@ -17,27 +17,27 @@ namespace camber::copymill {
 /// A place where tooth passings take more than LoadFigures::kOver of the target.
 struct OverTarget {
   double t_s = 0;
-  Vec3 place_mm = Vec3::Zero();  ///< of the tip, at the greatest force
+  Vec3 place_mm = Vec3::Zero();  ///< tip at the greatest force
   double force_N = 0;            ///< greatest
   std::size_t passings = 0;
 };
 
-/// How well an operation's load kept to its target.
+/// Figures of how well an operation's load kept to its target.
 struct LoadFigures {
-  static constexpr double kOver = 1.1;  ///< of the target: places with more are named
+  static constexpr double kOver = 1.1;  ///< fraction of the target: places with more are named
   double target_N = 0;                  ///< 0: none, feed and depths stay as they are
   double max_N = 0;
-  std::size_t passings = 0;  ///< that cut
-  std::size_t counted = 0;   ///< of these, at a feed that the rule chose: not its lowest or highest, not a corner's
-  std::size_t within = 0;    ///< of the counted, 80 to 105 % of the target
-  std::size_t over = 0;      ///< of all that cut, more than 120 %
+  std::size_t passings = 0;          ///< passings that cut
+  std::size_t counted = 0;           ///< of them, at a freely chosen feed: not the lowest, the highest or a corner's
+  std::size_t within = 0;            ///< of the counted ones, with 80 to 105 % of the target
+  std::size_t over = 0;              ///< of all that cut, with more than 120 %
   std::vector<OverTarget> places{};  ///< in order of time
 };
 
 /// One operation: the probe that cuts the stock, and the rule where the operation has a target.
 class LoadFollower {
  public:
-  /// Without `loads`, and without a target, passings tell a load of 0 and the stock is cut by flush().
+  /// Without `loads`, and without a target, passings have a load of 0 and the stock is cut by flush().
   LoadFollower(const machine::Job& job, const machine::CopyOperation& operation, removal::Stock& stock,
                const removal::TipBox& tips, const simulate::ForceRegions& regions, std::int32_t first_id, bool loads);
 
@@ -55,12 +55,12 @@ class LoadFollower {
 
   /// A place that the tool reaches soon.
   struct Ahead {
-    Vec3 place, direction;         ///< of the tip there
+    Vec3 place, direction;         ///< tip and its direction there
     double way_mm = 0;             ///< along the path to it, as far as braking needs or farther
     double braking_mm_per_s2 = 1;  ///< deceleration along the path
   };
   void look_ahead(double t_s, const Ahead& ahead);
-  /// As removal::StepEngager::approach.
+  /// Calls removal::StepEngager::approach.
   void approach(const Vec3& tip, int most) {
     if (probe_) probe_->approach(tip, most);
   }
@@ -86,7 +86,7 @@ class LoadFollower {
   removal::CutterShape shape_;
   std::int32_t first_id_;
   std::vector<removal::Stamp> waiting_;
-  double apart_mm_;  ///< of waiting stamps
+  double apart_mm_;  ///< distance of waiting stamps
   std::optional<LoadRule> rule_;
   FeltHardness felt_;
   LoadBand band_;
@@ -94,7 +94,7 @@ class LoadFollower {
   struct Bound {
     double at_mm, feed_mm_per_s;  ///< along the path, and no faster there
   };
-  std::vector<Bound> bounds_;  ///< where the tool has not been yet
+  std::vector<Bound> bounds_;  ///< feed bounds at places that the tool has not reached
   double gone_mm_ = 0, passing_mm_ = 0, braking_mm_per_s2_ = 1;
   LoadFigures figures_;
   double last_over_s_ = 0;

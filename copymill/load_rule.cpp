@@ -7,7 +7,7 @@
 namespace camber::copymill {
 namespace {
 
-/// Of the lowest feed: below it a passing counts as cut at the lowest.
+/// Factor on the lowest feed: below it a passing counts as cut at the lowest.
 constexpr double kAtLowest = 1.02;
 
 /// A share by which the hardness that is felt falls towards what the last passing told. It rises at once.
@@ -90,7 +90,7 @@ double LoadRule::highest_feed() const {
   return std::max(lowest_feed(), std::min(band_.highest * nominal_.feed_mm_per_s, band_.max_feed_mm_per_s));
 }
 
-/// Of the last turn's passings, the greatest load at a feed, over the limit.
+/// Returns the greatest load of the last turn's passings at a feed, over the limit.
 double LoadRule::share_at(double feed_mm_per_s) const {
   double greatest = 0;
   for (const Passing& p : turn_) greatest = std::max(greatest, p.share * feed_mm_per_s / p.feed_mm_per_s);

@@ -1,7 +1,13 @@
 #pragma once
-// How feed and depths follow the load of a cut: feed first, then radial, then axial depth.
+// Load rule: lets feed and depths follow the load of a cut, first the feed, then the radial, then the axial depth.
 //
-// - Every tooth passing tells its load and the feed at which it was cut. The load at the feed now commanded is taken as
+// Overview. The caller reports every tooth passing by feel() and takes feed and depths from conditions() at every tick;
+// ahead of the tool it asks the model for the load at a place and passes the result on. The load may be the lateral
+// force, the torque, the power or the deflection; LoadBand has its limit and all numbers of the rule, as fractions of
+// the limit or of the nominal feed and depths. The rule has no model of its own: it assumes that
+// the load is proportional to the feed. Edge forces make it less than proportional; the next passing shows the rest.
+//
+// - Every tooth passing has its load and the feed at which it was cut. The load at the feed now commanded is taken as
 //   proportional to the feed, and of the passings of the last turn the greatest counts: teeth differ.
 // - Over the limit the feed falls at once, in proportion, to LoadBand::aim of the limit, down to the lowest feed.
 // - Below LoadBand::up_below of the limit it rises by a step a turn, up to the highest feed.
@@ -29,16 +35,16 @@ enum class LoadKind : std::uint8_t { force, torque, power, deflection };
 double load_of(const simulate::StampLoad& load, LoadKind kind, double spindle_rpm);
 
 struct LoadBand {
-  double limit = 0;                      ///< of the load, in its unit
+  double limit = 0;                      ///< limit of the load, in its unit
   int teeth = 1;                         ///< tooth passings a turn
-  double up_below = 0.80, aim = 0.90;    ///< of the limit
-  double up_step = 0.10;                 ///< of the nominal feed
-  double lowest = 0.50, highest = 1.50;  ///< of the nominal feed
-  double max_feed_mm_per_s = 1e9;        ///< of machine and operation; wins over `highest`
+  double up_below = 0.80, aim = 0.90;    ///< fractions of the limit
+  double up_step = 0.10;                 ///< fraction of the nominal feed
+  double lowest = 0.50, highest = 1.50;  ///< fraction of the nominal feed
+  double max_feed_mm_per_s = 1e9;        ///< bound of machine and operation; wins over `highest`
   int turns_at_lowest = 2;               ///< over the limit at the lowest feed before a depth falls
   int turns_of_room = 10;                ///< before a depth rises
   double depth_step = 0.80;              ///< a depth falls to this share of itself, or lower in proportion to the load
-  double lowest_depth = 0.25;            ///< of the nominal depths
+  double lowest_depth = 0.25;            ///< fraction of the nominal depths
 };
 
 struct Conditions {
@@ -49,9 +55,9 @@ struct Conditions {
 struct Felt {
   double t_s = 0;
   Vec3 place_mm = Vec3::Zero();
-  double load = 0;           ///< what is felt; 0: in air
-  double expected = 0;       ///< what the model tells of the same passing
-  double feed_mm_per_s = 0;  ///< at which it was cut
+  double load = 0;           ///< felt load; 0: in air
+  double expected = 0;       ///< load that the model expects of the same passing
+  double feed_mm_per_s = 0;  ///< feed at which it was cut
 };
 
 enum class Quantity : std::uint8_t { feed, radial_depth, axial_depth, radial_engagement };
@@ -100,7 +106,7 @@ class LoadRule {
   /// counts in full.
   double feed_ahead(double load, double load_at_half, double feed_mm_per_s, double hardness_there = 1) const;
   bool at_highest_feed() const { return now_.feed_mm_per_s >= highest_feed(); }
-  /// What is felt over what the model expects.
+  /// Returns the ratio of felt to expected load.
   double hardness() const { return hardness_; }
   /// Notes that a place ahead allows no more than this feed; infinite: nothing ahead binds. For the log: keeping it is
   /// up to the motion (copymill/speed_ahead.h).

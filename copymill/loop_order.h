@@ -1,5 +1,5 @@
 #pragma once
-// Which loop comes next, so that the tool stays near what it has cut.
+// Loop order: chooses the loop that comes next, so that the tool stays near what it has cut.
 #include <optional>
 #include <vector>
 
@@ -22,7 +22,7 @@ class LoopOrder {
  private:
   struct Loop {
     Pass pass;
-    std::vector<std::size_t> after;  ///< that are to be taken before
+    std::vector<std::size_t> after;  ///< loops that have to be cut before
     bool may_turn = false;
     bool taken = false;
   };

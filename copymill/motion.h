@@ -1,5 +1,5 @@
 #pragma once
-// The tip along lines and arcs, period by period of the control.
+// Motion: moves the tip along lines and arcs, period by period of the control.
 #include <cstddef>
 #include <vector>
 
@@ -21,11 +21,11 @@ class Motion {
 
   /// Requires a path that begins where the last one ended.
   void start(std::vector<PathPiece> path, bool rapid);
-  /// One period. `wanted`: speed to aim for; a stop is 0. `ahead`: a further limit on the way, or none.
+  /// Advances by one period. `wanted`: speed to aim for; a stop is 0. `ahead`: a further limit on the way, or none.
   void tick(double wanted_mm_per_s, const SpeedLimit& ahead);
   /// The path is done and the tip at rest.
   bool finished() const { return done() && settled_ >= window_.size(); }
-  /// At rest, wherever that is.
+  /// True if the tip is at rest, wherever that is.
   bool at_rest() const { return speed_ <= 0 && settled_ >= window_.size(); }
   const Vec3& tip() const { return tip_; }
   double speed_mm_per_s() const { return speed_; }
@@ -33,11 +33,11 @@ class Motion {
   double smoothing_s() const { return period_s_ * static_cast<double>(window_.size()); }
   double braking_mm_per_s2() const { return acceleration_; }
   double stopping_mm() const { return stopping_distance_mm(speed_, acceleration_); }
-  /// How far along the path, before the average.
+  /// Position along the path, before the moving average.
   std::size_t piece() const { return piece_; }
   double along_piece_mm() const { return along_; }
   const std::vector<PathPiece>& path() const { return path_; }
-  /// A place farther on, and the direction there; the end where the path ends before.
+  /// Returns a place farther on and the direction there; the end of the path where it ends before.
   struct Ahead {
     Vec3 place, direction;
   };
@@ -53,7 +53,7 @@ class Motion {
 
   double period_s_;
   Vec3 velocity_limit_, rapid_limit_, acceleration_limit_;
-  std::vector<Vec3> window_;  ///< of the moving average, a ring
+  std::vector<Vec3> window_;  ///< ring buffer of the moving average
   std::size_t window_at_ = 0, settled_ = 0;
   std::vector<PathPiece> path_;
   std::vector<double> from_mm_;         ///< along the path to the beginning of each piece, and its length

@@ -1,5 +1,5 @@
 #pragma once
-// Distance of every point of a grid to the nearest of many segments.
+// Finds the distance of every point of a grid from the nearest of many segments.
 #include <array>
 #include <vector>
 

@@ -9,7 +9,7 @@
 
 namespace camber::copymill {
 
-/// What an operation works on.
+/// Everything that an operation works on.
 struct Workplace {
   const TriangleMesh& part;
   const Cut& cut;

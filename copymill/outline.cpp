@@ -105,7 +105,7 @@ class Tracer {
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Index of the point at least `leg_mm` away from `from`, in steps of `way`.
+/// Returns the index of the point at least `leg_mm` away from `from`, in steps of `way`.
 std::size_t away(const Outline& loop, std::size_t from, bool forwards, double leg_mm) {
   const std::size_t n = loop.size();
   std::size_t k = from;
@@ -116,7 +116,7 @@ std::size_t away(const Outline& loop, std::size_t from, bool forwards, double le
   return k;
 }
 
-/// Where the chords before loop[a] and behind loop[b] meet, if that is a corner ahead of both.
+/// Returns where the chords before loop[a] and behind loop[b] meet, if that is a corner ahead of both.
 std::optional<Vec2> corner_between(const Outline& loop, std::size_t a, std::size_t b, double reach_mm) {
   const double leg = 0.5 * reach_mm;
   const Vec2 before = loop[a] - loop[away(loop, a, false, leg)], behind = loop[away(loop, b, true, leg)] - loop[b];

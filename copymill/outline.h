@@ -1,5 +1,5 @@
 #pragma once
-// The outline of a region that is given by a yes or no at each point.
+// Traces the outline of a region that is given by a yes or no at each point.
 #include <functional>
 #include <vector>
 

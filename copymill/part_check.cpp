@@ -20,7 +20,7 @@ struct Point {
   double area_mm2 = 0;
 };
 
-/// Of a slender triangle: rows across it, from the corner between its long sides on.
+/// Adds points of a slender triangle: rows across it, from the corner between its long sides on.
 void add_rows(const std::array<Vec3, 3>& corners, const Vec3& normal, double area, double step,
               std::vector<Point>& out) {
   std::size_t tip = 0;  // opposite the shortest side
@@ -69,7 +69,8 @@ bool free_tip(const Reach& tool, const Vec3& tip) {
          tool.region->contains(tip.head<2>(), tip.z()) && tool.field->free(tip.head<2>(), tip.z() + kContact_mm);
 }
 
-/// Whether the tool can stand so that it touches the part at a point. Under a flat bottom it may stand anywhere beside.
+/// Returns whether the tool can stand so that it touches the part at a point. Under a flat bottom it may stand anywhere
+/// beside.
 bool touches(const Reach& tool, const Point& p) {
   const double corner = tool.shape.corner_radius_mm, flat = tool.shape.radius_mm - corner;
   const Vec2 level = p.normal.head<2>();

@@ -1,5 +1,5 @@
 #pragma once
-// What an operation's path and the stock that is left have to do with the part.
+// Judges a path and the stock that is left against the part.
 #include <vector>
 
 #include "base/geometry.h"
@@ -12,10 +12,10 @@
 
 namespace camber::copymill {
 
-/// How far the tip's path goes into the part, by the exact offset surface at places of the path.
+/// Depth of the tip's path in the part, by the exact offset surface at places of the path.
 class PathDepth {
  public:
-  static constexpr double kStep_mm = 0.2;  ///< of path between places
+  static constexpr double kStep_mm = 0.2;  ///< way between two places
 
   /// `field`: without allowance.
   explicit PathDepth(const TipField& field) : field_(field) {}
@@ -35,18 +35,18 @@ class PathDepth {
 /// A milling operation's tool: where it could touch the part.
 struct Reach {
   removal::CutterShape shape;
-  const TipField* field = nullptr;  ///< without allowance
+  const TipField* field = nullptr;  ///< field without allowance
   const AxisRegion* region = nullptr;
-  double lowest_mm = 0, highest_mm = 0;  ///< of the tip
+  double lowest_mm = 0, highest_mm = 0;  ///< range of the tip's height
 };
 
 /// Material left on the part, along its normal, at points of its surface; up to the stock's band.
 struct LeftMaterial {
-  double max_um = 0, p95_um = 0, mean_um = 0;  ///< where a tool could touch the part
+  double max_um = 0, p95_um = 0, mean_um = 0;  ///< material where a tool could touch the part
   Vec3 worst_mm = Vec3::Zero();
   double gouge_um = 0;  ///< greatest depth of the stock's surface below the part's, at these points
   double reached_mm2 = 0;
-  double unreached_mm2 = 0;  ///< of upward faces and walls with material on them that no tool could touch
+  double unreached_mm2 = 0;  ///< area of upward faces and walls with material that no tool could touch
 };
 
 /// Points about `step_mm` apart. Points within a voxel of an edge are left out: the field is not that sharp.

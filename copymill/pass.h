@@ -1,5 +1,5 @@
 #pragma once
-// What the tip follows, before it becomes lines and arcs.
+// A pass: the points that the tip follows, before they become lines and arcs.
 #include <functional>
 #include <vector>
 
@@ -7,13 +7,13 @@
 
 namespace camber::copymill {
 
-/// At one level, as seen from above. Closed: the first point is not repeated.
+/// A pass at one level, seen from above. Closed: the first point is not repeated.
 struct FlatPass {
   std::vector<Vec2> points;
   bool closed = false;
 };
 
-/// In space.
+/// A pass in space.
 struct Pass {
   std::vector<Vec3> points;
   bool closed = false;

@@ -1,5 +1,5 @@
 #pragma once
-// A path as lines and arcs, which is what the control runs and what the program says.
+// Pieces of a path, lines and arcs: what the control runs and what the program says.
 #include <vector>
 
 #include "base/geometry.h"
@@ -7,7 +7,7 @@
 
 namespace camber::copymill {
 
-/// From one place to another: a line, or an arc in a level plane.
+/// A piece from one place to another: a line, or an arc in a level plane.
 struct PathPiece {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();
   bool arc = false;
@@ -22,9 +22,9 @@ struct PathPiece {
 
 PathPiece line_piece(const Vec3& from, const Vec3& to);
 
-/// What is programmed: places are whole numbers of it.
+/// Tolerance and increment of the pieces.
 struct PieceOptions {
-  double tolerance_mm = 0.002;  ///< of lines and arcs from the points
+  double tolerance_mm = 0.002;  ///< largest distance of lines and arcs from the points
   double increment_mm = 0.001;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where the tool's axis may be while it cuts, in X and Y.
+// Region of an operation: where the tool's axis may be in X and Y while it cuts.
 #include <vector>
 
 #include "base/geometry.h"
@@ -13,9 +13,10 @@ class AxisRegion {
   /// That of an operation; without one, the rectangle.
   AxisRegion(const machine::CopyRegion& region, const Vec2& stock_min, const Vec2& stock_max);
 
-  /// At some level.
+  /// Returns whether the axis may be at p at some level.
   bool contains(const Vec2& p) const;
-  /// At a level of the tip. A box's upper end does not belong to it: what is cut there lies above.
+  /// Returns whether the axis may be at p at a level of the tip. A box's upper end does not belong to it: what is cut
+  /// there lies above.
   bool contains(const Vec2& p, double z_mm) const;
   bool depends_on_level() const { return !boxes_.empty(); }
   const std::vector<machine::CopyRegion::Box>& boxes_mm() const { return boxes_; }

@@ -14,7 +14,7 @@
 namespace camber::copymill {
 namespace {
 
-constexpr double kBeside_mm = 20;  ///< of the stock: tips that enter from the side
+constexpr double kBeside_mm = 20;  ///< distance beside the stock at which tips enter from the side
 constexpr double kNoLimit_mm_per_s = std::numeric_limits<double>::infinity();
 
 double smallest_diameter_mm(const machine::Job& job) {
@@ -44,7 +44,7 @@ std::string upper(std::string_view text) {
   return out;
 }
 
-/// Of this thread.
+/// Returns the processor time of this thread, ms.
 double processor_ms() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -219,7 +219,7 @@ void Runner::stamp_at(double t_s, const Vec3& tip) {
   look_due_ = true;
 }
 
-/// At what the tool reaches when it has braked, begun a tooth passing and a tick later.
+/// Looks at the place that the tool reaches if it begins to brake a tooth passing and a tick later.
 void Runner::look_ahead() {
   look_due_ = false;
   const double passing_s = 60 / (cut_->operation.spindle_rpm * cut_->tool.flutes);

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the tool along passes: ticks, tooth passings, loads, the stock, and the program that says the same.
+// Runner: runs the tool along passes in ticks, cuts every tooth passing, follows the load, and writes the program.
 #include <chrono>
 #include <optional>
 #include <string>
@@ -16,7 +16,7 @@
 
 namespace camber::copymill {
 
-/// One operation with its tool.
+/// An operation with its tool.
 struct Cut {
   const machine::CopyOperation& operation;
   const machine::Tool& tool;
@@ -27,7 +27,7 @@ class Runner {
  public:
   enum class Ended {
     done,
-    stopped,  ///< for good, by CopyOptions::stop_after_s
+    stopped,  ///< ended by CopyOptions::stop_after_s
     replan    ///< a depth has fallen: the tool stands in the cut and waits for other passes
   };
 
@@ -52,7 +52,7 @@ class Runner {
   double safe_z_mm() const { return safe_z_; }
   bool stopped() const { return stopped_; }
   Ended ended() const;
-  /// Of the next loops and rows, and of the next level.
+  /// Radial depth of the next loops and rows, axial depth of the next level.
   double radial_mm() const { return follower_->radial_mm(); }
   double axial_mm() const { return follower_->axial_mm(); }
   /// Other passes follow.
@@ -60,14 +60,14 @@ class Runner {
   /// The load that the model expects of a level cut at a place at the lowest feed, with what is felt over it, as a
   /// share of the target; nothing where the operation has none.
   std::optional<double> share_at_lowest_feed(const Vec3& tip, const Vec2& direction);
-  /// For the log: how a full cut was made, or avoided. At the present time.
+  /// Logs how a full cut was made or avoided, at the present time.
   void note_slot(const Vec3& tip, double from_mm, double to_mm, Cause cause, double share);
-  /// Of all operations so far.
+  /// Clear height after all operations so far.
   const ClearHeight& clear_height() const { return clear_height_; }
   double increment_mm() const { return piece_options_.increment_mm; }
 
   OperationSummary& summary() { return summary_; }
-  /// What concerns the whole run; the text is complete. Call once.
+  /// Completes the text and fills in what concerns the whole run. Call once.
   void finish(CopyResult& result);
 
  private:
@@ -99,7 +99,7 @@ class Runner {
   Standing* standing_ = nullptr;
   PathDepth* depth_ = nullptr;
   OperationSummary summary_;
-  std::vector<Change> notes_;  ///< of the operation, beside the follower's changes
+  std::vector<Change> notes_;  ///< changes of the operation, beside the follower's
   std::optional<Vec3> at_;
   double safe_z_ = 0;
   double t_s_ = 0;

@@ -6,14 +6,16 @@
 namespace camber::copymill {
 namespace {
 
-constexpr double kFullWidth_rad = 150 * kPi / 180;     ///< of the leading half circumference: material on either side
-constexpr double kStands_mm = 0.02;                    ///< thinner material is not met
-constexpr int kAround = 48;                            ///< directions in which a circle is looked at
-constexpr double kWithin = 0.99, kWithin_mm = 0.005;   ///< between two of these a wall may stand out
-constexpr double kGrowth = 0.15;                       ///< of a circle's radius over its advance
-constexpr double kEven_mm = 0.02;                      ///< of radii: no more is growth
-constexpr double kAlready = 0.3;                       ///< of a circle's radius: places so near its centre are done
-constexpr double kHeld = 1 / LoadBand{}.lowest_depth;  ///< of the target: more is over it at the lowest depths too
+constexpr double kFullWidth_rad =
+    150 * kPi / 180;                 ///< part of the leading half circumference in material that makes a full cut
+constexpr double kStands_mm = 0.02;  ///< thinner material is not met
+constexpr int kAround = 48;          ///< directions in which a circle is looked at
+constexpr double kWithin = 0.99, kWithin_mm = 0.005;  ///< between two of these a wall may stand out
+constexpr double kGrowth = 0.15;                      ///< growth of a circle's radius over its advance
+constexpr double kEven_mm = 0.02;                     ///< difference of radii below which they count as equal
+constexpr double kAlready = 0.3;  ///< fraction of a circle's radius: places so near its centre are done
+constexpr double kHeld =
+    1 / LoadBand{}.lowest_depth;  ///< multiple of the target: more exceeds it at the lowest depths too
 
 bool counter_clockwise(const machine::CopyOperation& operation) {
   // Climb milling has the material on its right: outside.
@@ -22,7 +24,7 @@ bool counter_clockwise(const machine::CopyOperation& operation) {
 
 Vec2 spoke(int k) { return {std::cos(2 * kPi * k / kAround), std::sin(2 * kPi * k / kAround)}; }
 
-/// A place on a chain of points, by its way along it.
+/// A place on a chain of points, by the way along it.
 class Guide {
  public:
   explicit Guide(const std::vector<Vec2>& points) : points_(points), along_(points.size(), 0) {
@@ -88,7 +90,7 @@ std::vector<Slotting::Stretch> Slotting::full_stretches(const Pass& pass) const 
 
 bool Slotting::full_width(const Pass& pass) const { return !full_stretches(pass).empty(); }
 
-/// Of the loads of a full cut along a stretch.
+/// Returns the greatest load of a full cut along a stretch, as a share of the target.
 double Slotting::greatest_share(const Stretch& s) const {
   constexpr std::size_t kLooks = 12;
   double out = 0;
@@ -103,7 +105,7 @@ double Slotting::greatest_share(const Stretch& s) const {
 
 bool Slotting::inside(const Vec2& p, double z) const { return place_.region.contains(p, z) && place_.field.free(p, z); }
 
-/// Of the circles about a place that the tool may run, the largest.
+/// Returns the radius of the largest circle about a place that the tool may run.
 double Slotting::room_mm(const Vec2& centre, double z) const {
   const auto free = [&](double radius) {
     for (int k = 0; k < kAround; ++k)
@@ -123,7 +125,7 @@ double Slotting::room_mm(const Vec2& centre, double z) const {
   return std::max(0.0, kWithin * fits - kWithin_mm);
 }
 
-/// Whether the line from one circle to the next stays within.
+/// Returns whether the line from one circle to the next stays within.
 bool Slotting::joined(const Circle& a, const Circle& b, double z) const {
   const bool ccw = counter_clockwise(place_.cut.operation);
   const Vec2 from = start_of({a, b}, ccw),

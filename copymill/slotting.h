@@ -1,5 +1,5 @@
 #pragma once
-// Trochoids where a pass would have the cutter's full width in the cut.
+// Slotting: cuts trochoids where a pass would have the cutter's full width in the cut.
 #include <optional>
 #include <vector>
 
@@ -16,18 +16,18 @@ namespace camber::copymill {
 /// force that the operation asks for even at the lowest feed and depth; without such a target never.
 class Slotting {
  public:
-  /// Of the tool's diameter: no smaller circles are run. A slot, less the allowance on either side, must be wider than
-  /// the tool by twice as much, and a hundredth of it.
+  /// Fraction of the tool's diameter: no smaller circles are run. A slot, less the allowance on either side, must be
+  /// wider than the tool by twice as much, and a hundredth of it.
   static constexpr double kSmallest = 0.05;
-  static constexpr double kLargest = 0.25;  ///< no larger ones
+  static constexpr double kLargest = 0.25;  ///< fraction of the diameter: no larger circles are run
 
   Slotting(const Workplace& place, Approach& approach) : place_(place), approach_(approach) {}
 
-  /// Whether trochoids may be needed at the radial depth that is now.
+  /// Returns whether trochoids may be needed at the present radial depth.
   bool wanted() const;
   double smallest_mm() const { return 2 * kSmallest * place_.cut.shape.radius_mm; }
   double largest_mm() const { return 2 * kLargest * place_.cut.shape.radius_mm; }
-  /// Whether a pass would have the full width in the cut somewhere.
+  /// Returns whether a pass would have the full width in the cut somewhere.
   bool full_width(const Pass& pass) const;
   /// Cuts trochoids around the stretches of a level pass that would have. `own`: the pass itself is to be cut next, and
   /// the log tells why a stretch of it stays a full cut.

@@ -8,7 +8,7 @@ namespace camber::copymill {
 namespace {
 
 /// The greatest speed v at the end of a tick from which a limit can be kept: v^2 <= u^2 + 2 a (D - (v0 + v) dt / 2).
-/// Where the limit stands in the tick, the speed is u there: u^2 >= v0^2 + 2 D (v - v0) / dt.
+/// Returns the speed for a limit that lies within the tick, where the speed must be u: u^2 >= v0^2 + 2 D (v - v0) / dt.
 double greatest_speed(double v0, const SpeedLimit& limit, double a, double dt) {
   const double u2 = limit.speed_mm_per_s * limit.speed_mm_per_s, way = limit.distance_mm;
   const double right = u2 + 2 * a * way - a * v0 * dt;

@@ -1,5 +1,5 @@
 #pragma once
-// Speeds along a path whose limits are known ahead as far as braking goes.
+// Speed ahead: chooses the speed of each tick so that limits ahead can be kept by braking.
 #include <span>
 
 #include "base/geometry.h"
@@ -7,24 +7,24 @@
 
 namespace camber::copymill {
 
-/// At a distance along the path from here no more than this speed; 0: a stop there.
+/// A speed limit at a distance along the path from here; 0: a stop there.
 struct SpeedLimit {
   double distance_mm = 0, speed_mm_per_s = 0;
 };
 
 /// Motion in one tick, with even acceleration; where it ends at rest, with an even one to rest and then none.
 struct TickMotion {
-  double speed_mm_per_s = 0;  ///< at its end
+  double speed_mm_per_s = 0;  ///< speed at its end
   double distance_mm = 0;
 };
 
-/// As near to `wanted_mm_per_s` as the acceleration allows, and so that every limit can still be kept by braking with
-/// that acceleration. Limits that could be kept at the tick's beginning, by this rule, can be kept at its end; of
-/// limits nearer than braking allows it makes the best.
+/// Returns the motion as near to `wanted_mm_per_s` as the acceleration allows, such that every limit can still be kept
+/// by braking with that acceleration. Limits that could be kept at the tick's beginning, by this rule, can be kept at
+/// its end; of limits nearer than braking allows it makes the best.
 TickMotion next_tick(double speed_mm_per_s, double wanted_mm_per_s, std::span<const SpeedLimit> ahead,
                      double acceleration_mm_per_s2, double tick_s);
 
-/// From a speed to rest, v^2 / (2 a).
+/// Returns the way from a speed to rest, v^2 / (2 a).
 double stopping_distance_mm(double speed_mm_per_s, double acceleration_mm_per_s2);
 
 /// The greatest acceleration along a direction that asks no axis for more than its own; the path's own limit counts

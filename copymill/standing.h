@@ -1,5 +1,5 @@
 #pragma once
-// What still stands: the highest material in each cell, as the planner sees the stock.
+// Standing material: the height of the material in each cell, as the planner sees the stock.
 #include <vector>
 
 #include "base/geometry.h"
@@ -21,7 +21,7 @@ class Standing {
 
   /// The cutter passes from one place to another.
   void cut(const removal::CutterShape& shape, const Vec3& from, const Vec3& to);
-  /// Whether the cutter, its tip there, meets material by more than `more_than_mm` of height.
+  /// Returns whether the cutter, its tip there, meets material by more than `more_than_mm` of height.
   bool meets(const removal::CutterShape& shape, const Vec3& tip, double more_than_mm) const;
   /// The angle of the cutter's leading half circumference, up to pi, that has material beside it, moving level in a
   /// direction of length 1. Looked at every 7.5 degrees, at 0.97, 0.8 and 0.6 of the radius.
@@ -32,7 +32,7 @@ class Standing {
   /// Highest material under a disc.
   double highest_under_mm(const Vec2& axis, double radius_mm) const;
   double at(const Vec2& p) const;
-  double top_mm() const { return top_; }  ///< of all, when it was read
+  double top_mm() const { return top_; }  ///< greatest height when it was read
   double cell_mm() const { return grid_.step_mm; }
   const Grid& grid() const { return grid_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// How low the tool's tip may go: the part's offset surface, with an allowance.
+// Tip field: the lowest height of the tool's tip over (x, y), that is the part's offset surface with an allowance.
 #include <limits>
 
 #include "base/geometry.h"
@@ -24,11 +24,11 @@ class TipField {
     const auto contact = drop_.at(axis);
     return contact ? contact->tip_mm + allowance_mm_ : kNothingBelow;
   }
-  /// Whether the tip may stand there; contact counts as free.
+  /// Returns whether the tip may stand there; contact counts as free.
   bool free(const Vec2& axis, double tip_mm) const { return lowest_mm(axis) <= tip_mm + kContact_mm; }
 
   double allowance_mm() const { return allowance_mm_; }
-  const repath::DropCutter& drop() const { return drop_; }  ///< of the grown cutter
+  const repath::DropCutter& drop() const { return drop_; }  ///< drop cutter of the tool grown by the allowance
 
  private:
   static constexpr double kContact_mm = 1e-7;

@@ -10,7 +10,7 @@ namespace {
 /// Between -pi and pi.
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
-/// With the axis at angle t of `next`, the cutter moving counter-clockwise.
+/// Returns the engagement angle with the axis at angle t of `next`, the cutter moving counter-clockwise.
 double engagement_at(double R, const Circle& before, const Circle& next, double t) {
   const Vec2 q = next.centre + next.radius_mm * Vec2(std::cos(t), std::sin(t)) - before.centre;
   const double rho = q.norm(), reach = R + before.radius_mm;
@@ -25,7 +25,7 @@ Vec2 on(const Circle& circle, double angle) {
   return circle.centre + circle.radius_mm * Vec2(std::cos(angle), std::sin(angle));
 }
 
-/// Of the place on both circles' right (left) side, seen along the way.
+/// Returns the angle of the place on both circles' right (left) side, seen along the way.
 double leaving_angle(const Circle& from, const Circle& to, bool counter_clockwise) {
   const Vec2 way = to.centre - from.centre;
   return std::atan2(way.y(), way.x()) + (counter_clockwise ? -0.5 : 0.5) * kPi;

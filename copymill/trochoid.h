@@ -1,5 +1,5 @@
 #pragma once
-// Trochoidal milling: circles that advance by a step, so that a slot is cut without the cutter's full width in the cut.
+// Trochoidal milling: circles that advance by a step, so that a slot is cut without a full cut.
 #include <vector>
 
 #include "base/geometry.h"
@@ -7,10 +7,11 @@
 
 namespace camber::copymill {
 
-/// Of the cutter's circumference in the cut at a radial depth on a straight wall: acos(1 - a_e / R); pi from 2 R on.
+/// Returns the angle of the cutter's circumference in the cut at a radial depth on a straight wall: acos(1 - a_e / R);
+/// pi from 2 R on.
 double engagement_angle_rad(double cutter_radius_mm, double radial_depth_mm);
 
-/// Run by the cutter's axis.
+/// A circle that the cutter's axis runs.
 struct Circle {
   Vec2 centre = Vec2::Zero();
   double radius_mm = 0;
@@ -36,10 +37,10 @@ double trochoid_step_mm(double cutter_radius_mm, double circle_radius_mm, double
 
 /// Circle after circle, each once around, joined by lines: counter-clockwise with the line on the right of the way from
 /// centre to centre, clockwise with it on the left; either way it leaves and meets the circles in their own direction.
-/// All at one height. Begins on the first circle, where start_of() says.
+/// The path lies at one height and begins on the first circle, at start_of().
 std::vector<PathPiece> trochoid(const std::vector<Circle>& circles, double z_mm, bool counter_clockwise,
                                 double increment_mm);
-/// Where the line to the second circle leaves the first one.
+/// Returns where the line to the second circle leaves the first one.
 Vec2 start_of(const std::vector<Circle>& circles, bool counter_clockwise);
 
 }  // namespace camber::copymill

@@ -1,5 +1,5 @@
 #pragma once
-// The cutter from below.
+// The underside of a cutter: height of its surface above the tip, by distance from the axis.
 #include <algorithm>
 #include <cmath>
 

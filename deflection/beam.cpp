@@ -13,13 +13,13 @@ double flute_length(const machine::Tool& tool) {
   return std::min(tool.flute_length_mm.value_or(typical), tool.overhang_mm);
 }
 
-/// Diameter that bends at a height: of the fluted part the effective one.
+/// Returns the diameter that counts in bending at a height; for the fluted part the effective one.
 double bending_diameter_mm(const machine::Tool& tool, double z) {
   const double flutes = flute_length(tool);
   if (z < flutes) {
     double d = tool.diameter_mm;
     const bool tapered = tool.type == machine::ToolType::tapered_ball || tool.type == machine::ToolType::general;
-    // A tapered wall from its own diameter at the tip up; the rounded tip itself bends nothing.
+    // A tapered wall begins with its diameter at the tip; the rounded tip itself does not count.
     if (tapered) {
       const auto p = machine::parameters_of(tool);
       d = p.diameter_mm * (1 - std::tan(p.bottom_angle_rad) * std::tan(p.taper_rad)) + 2 * z * std::tan(p.taper_rad);

@@ -1,5 +1,6 @@
 #pragma once
-// The tool as a stepped cantilever on a lateral spring, and along its axis as a stepped bar on an axial one.
+// Compliance of the tool: a stepped cantilever on a lateral spring, and along its axis a stepped bar on an axial
+// spring.
 #include <limits>
 #include <vector>
 
@@ -31,12 +32,12 @@ class Beam {
   /// symmetric in its arguments (Maxwell). Heights beyond the holder face are treated as the face.
   double compliance_mm_per_N(double z_out_mm, double z_force_mm) const;
 
-  /// How far the tip yields along the axis under a unit axial force at height z_force, mm/N: 1/k_root + sum over the
+  /// Axial displacement of the tip under a unit axial force at height z_force, mm/N: 1/k_root + sum over the
   /// sections above of length / (E A).
   double axial_compliance_mm_per_N(double z_force_mm) const;
 
   /// First natural frequency of the beam alone, Hz (Rayleigh's quotient with the shape under a tip load), for the
-  /// warning that a static deflection is no longer valid. `density_kg_per_m3` of the shank.
+  /// warning that a static deflection is no longer valid. `density_kg_per_m3`: density of the shank.
   double first_frequency_hz(const machine::Tool& tool, double density_kg_per_m3) const;
 
   /// From the tip up.
@@ -47,10 +48,11 @@ class Beam {
   Root root_;
 };
 
-/// Fluted part with the effective diameter (of a tapered cutter the diameter at each height, in slices), then the neck,
-/// then the shank up to the overhang; along the axis bars of these diameters, or the tool's axial stiffness where it is
-/// given. With tool.shear, kappa = 6 (1 + nu) / (7 + 6 nu) of a round bar, nu = 0.3.
-/// Source of kappa: Cowper, The shear coefficient in Timoshenko's beam theory, J. Appl. Mech. 33 (1966) 335-340.
+/// Builds the beam of a tool: the fluted part with its effective diameter (a tapered cutter in slices, each with the
+/// diameter at its height), the neck, and the shank up to the overhang. Along the axis it is a bar of these diameters,
+/// or the tool's axial stiffness where that is given. With tool.shear, kappa = 6 (1 + nu) / (7 + 6 nu) of a round bar,
+/// nu = 0.3. Source of kappa: Cowper, The shear coefficient in Timoshenko's beam theory, J. Appl. Mech. 33 (1966)
+/// 335-340.
 Beam beam_of(const machine::Tool& tool);
 
 }  // namespace camber::deflection

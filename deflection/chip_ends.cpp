@@ -90,7 +90,7 @@ void ChipEnds::add_ring(const removal::EnvelopeGrid& envelope, int ring, std::sp
 
 void ChipEnds::set_ramps(int steps) {
   const auto place = [&](const ChipEnd& e) { return static_cast<int>(e.point) % steps + e.side * e.at; };
-  // How much later the next ring's same end is; none: not a number.
+  // Delay of the same end on the next ring, steps; NaN: there is none.
   const auto later = [&](const ChipEnd& e, int ring) {
     double least = std::numeric_limits<double>::quiet_NaN();
     if (ring < 0 || ring + 1 >= static_cast<int>(first_.size())) return least;

@@ -1,5 +1,5 @@
 #pragma once
-// Force on the tool from one edge element.
+// Force on the tool from one edge element, by the material's force law.
 #include <algorithm>
 
 #include "machine/force_law.h"
@@ -13,10 +13,9 @@ struct EdgeForce {
   double tangential_N = 0, radial_N = 0, axial_N = 0;
 };
 
-/// dF_t = (k_t(h) h + K_te) db, likewise radial and axial, with k(h) of the material's law (machine/force_laws).
-/// [N] = ([MPa][mm] + [N/mm])[mm]
-/// Source of the directions on a general cutter: Engin & Altintas 2001. chip_thickness_mm: uncut, along the normal;
-/// zero or less means in air, and the force is zero.
+/// Returns the force of an edge element: dF_t = (k_t(h) h + K_te) db, likewise radial and axial, with k(h) of the
+/// material's law (machine/force_laws). [N] = ([MPa][mm] + [N/mm])[mm] Source of the directions on a general cutter:
+/// Engin & Altintas 2001. chip_thickness_mm: uncut, along the normal; zero or less means in air, and the force is zero.
 /// edge_ramp_mm > 0: below this thickness the force (cutting and edge terms) is the chord from zero. Without it the
 /// slope of a law may be unbounded at zero, as Kienzle's is, and a tool that the edge force alone can push out of the
 /// cut has no equilibrium with a force that jumps.
@@ -32,8 +31,8 @@ inline EdgeForce edge_force(const machine::Material& material, double chip_thick
   });
 }
 
-/// Its derivative by the chip thickness, per width of edge, MPa (as if N). Zero in air. The thickness counts as at
-/// least the ramp, or a micrometre without one.
+/// Returns the derivative of edge_force by the chip thickness, per width of edge, MPa (in the fields named N). Zero in
+/// air. The thickness counts as at least the ramp, or a micrometre without one.
 inline EdgeForce edge_force_slope(const machine::Material& material, double chip_thickness_mm,
                                   double edge_ramp_mm = 0) {
   const double h = chip_thickness_mm;

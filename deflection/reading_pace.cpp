@@ -8,10 +8,10 @@ namespace camber::deflection {
 
 namespace {
 
-constexpr double kMotionChange = 0.1;     ///< of the feed per tooth
-constexpr double kMaterialChange = 0.06;  ///< of the glance
+constexpr double kMotionChange = 0.1;     ///< fraction of the feed per tooth
+constexpr double kMaterialChange = 0.06;  ///< fraction of the glance
 constexpr double kCautious = 0.9, kFaster = 2;
-constexpr double kRemembered = 0.5;  ///< of an error, when the next one is smaller by chance
+constexpr double kRemembered = 0.5;  ///< fraction of an error that is kept where the next one is smaller by chance
 
 }  // namespace
 
@@ -28,7 +28,7 @@ bool ReadingPace::may_follow(std::size_t passing, const removal::Stamp& stamp) {
          (stamp.feed_per_tooth_mm - t.feed_mm).norm() <= kMotionChange * t.feed_mm.norm();
 }
 
-/// From the middle of the last two readings, in steps between them.
+/// Distance of a passing from the middle of the last two readings, in units of their distance.
 double ReadingPace::Tooth::way_to(std::size_t passing) const {
   return 0.5 + static_cast<double>(passing - last) / static_cast<double>(last - before);
 }
@@ -47,7 +47,7 @@ bool ReadingPace::as_much_material(std::size_t passing, double glance) const {
   return std::abs(glance - expected) <= kMaterialChange * t.last_glance;
 }
 
-/// The fraction of the line's slope that comes nearest to a reading; half of it counts, and half of the one before.
+/// Finds the fraction of the line's slope that fits a reading best, and averages it with the one before.
 void ReadingPace::Tooth::fit_slope(std::size_t passing, std::span<const float> row) {
   const auto way = static_cast<float>(way_to(passing));
   double along = 0, line2 = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Which tooth passings are read from the stock. Where the cut changes slowly, the deflections of the others are
-// extrapolated from those that were read.
+// Decides which tooth passings are read from the stock in static coupling. Where the cut changes slowly, the
+// deflections of the others are extrapolated from those that were read.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -37,7 +37,7 @@ class ReadingPace {
 
   struct Reading {
     double glance = 0;
-    double error_um = 0;    ///< of the extrapolated deflection, rms over the cut
+    double error_um = 0;    ///< error of the extrapolated deflection, rms over the cut
     double allowed_um = 0;  ///< largest permitted error
     bool settled = true;
   };
@@ -73,7 +73,7 @@ class ReadingPace {
 
   std::size_t longest_;
   std::size_t gap_ = 1;  ///< turns from reading to reading
-  double error_um_ = 0;  ///< of the last reading, or more, from earlier ones
+  double error_um_ = 0;  ///< error at the last reading, or a larger one remembered from earlier readings
   std::vector<Tooth> of_tooth_;
   Errors errors_;
 };

@@ -1,5 +1,6 @@
 #pragma once
-// Run-out of equally spaced teeth: offset of the tool axis from the spindle axis at each rotation step.
+// Run-out of equally spaced teeth, as the offset of the tool axis from the spindle axis at each rotation step. Static
+// coupling adds it to the deflection.
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -11,14 +12,14 @@ namespace camber::deflection {
 
 class RunOutOffsets {
  public:
-  /// None.
+  /// No run-out.
   RunOutOffsets() = default;
-  /// Requires equally spaced teeth.
+  /// Requires equally spaced teeth (Teeth::evenly_spaced).
   RunOutOffsets(const Teeth& teeth, int steps_per_pitch);
 
   bool none() const { return offset_mm_.empty(); }
-  /// By the rotation steps of a tooth passing, mm, in the tool's frame; `passing` counts since the start of the tool.
-  /// Empty without run-out.
+  /// Returns the offsets at the rotation steps of a tooth passing, mm, in the tool's frame; empty without run-out.
+  /// `passing` counts from the start of the tool.
   std::span<const Vec2> of(std::size_t passing) const;
   /// Adds `times` the offsets to a row of removal::DeflectionTable, [nodes][steps][2].
   void add(std::size_t passing, float times, std::size_t nodes, std::span<float> row) const;

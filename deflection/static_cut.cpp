@@ -9,14 +9,14 @@ namespace camber::deflection {
 
 namespace {
 
-constexpr double kTrust = 0.25;  ///< of a change, what the next one is at most where nothing else is known
+constexpr double kTrust = 0.25;  ///< largest ratio of the next change to this one where nothing else is known
 constexpr double kFall = 0.6;    ///< a reading should bring the change down to this share
 constexpr double kShorter = 0.7, kLonger = 1.5;
-constexpr int kSwings = 12;  ///< readings after which what still swings is stilled
+constexpr int kSwings = 12;  ///< readings after which a deflection that still oscillates is damped
 constexpr int kSwingRounds = 4;
 constexpr double kSwingShare = 1;
-constexpr double kAsForeseen = 0.8;  ///< of the fall that a reading promises
-constexpr double kMinShare = 0.3;    ///< of the way to the equilibrium
+constexpr double kAsForeseen = 0.8;  ///< fraction of the predicted decrease that counts as achieved
+constexpr double kMinShare = 0.3;    ///< smallest fraction of the way to the equilibrium
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void StaticCut::start(std::size_t from, std::size_t count, removal::DeflectionTa
   engager_.start(from, count, deflections);
 }
 
-/// Into the material or out of it: by the bend along the normals of the points that cut.
+/// Returns whether the tool is pulled in or pushed out, by its deflection along the normals of the points that cut.
 NoEquilibrium StaticCut::beyond_reach(std::span<const float> row) const {
   double inwards = 0;
   for (const removal::DeflectedChipSample& c : read_) {
@@ -46,9 +46,9 @@ NoEquilibrium StaticCut::beyond_reach(std::span<const float> row) const {
   return inwards > 0 ? NoEquilibrium::pulled_in : NoEquilibrium::pushed_out;
 }
 
-/// An edge that comes to rest where its next point would begin or cease to cut has no reading with a balance of its
-/// own: one asks for less bend, the next for more. Ever shorter steps close in on the place between them. True where
-/// the bend has stayed since swing_ was kept, and the readings are at odds about a small share of it only.
+/// An edge that rests where its next point begins to cut has no reading with an equilibrium of its own: one reading
+/// asks for less deflection, the next for more, and shorter and shorter steps converge between them. Returns true where
+/// the deflection has stayed since swing_ was kept and the readings differ by a small fraction of it.
 bool StaticCut::rests(std::span<const float> row, const StaticEquilibrium::Step& step) const {
   constexpr double kAtOdds = 0.1, kAtOdds_um = 1;
   if (swing_.size() != row.size() || step.rms_um > std::max(kAtOdds_um, kAtOdds * step.size_um)) return false;
@@ -61,14 +61,14 @@ bool StaticCut::rests(std::span<const float> row, const StaticEquilibrium::Step&
   return part * step.size_um < std::max(options_.settle_um, options_.settle_fraction * step.size_um);
 }
 
-/// The deflection of the stamp before, with this one's run-out.
+/// Starts from the deflection of the stamp before, with the run-out of this one.
 void StaticCut::start_from_before(std::size_t k, std::span<float> row) const {
   std::copy_n(deflections_->row(static_cast<std::ptrdiff_t>(k) - 1), row.size(), row.begin());
   if (from_ + k > 0) run_out_.add(from_ + k - 1, -1, deflections_->nodes(), row);
   run_out_.add(from_ + k, 1, deflections_->nodes(), row);
 }
 
-/// Extrapolates the deflection where that is good enough; otherwise its row is what a reading starts from.
+/// Extrapolates the deflection. Returns true where that is good enough; otherwise the row is the start of a reading.
 bool StaticCut::follow(std::size_t k) {
   const std::span<float> row(deflections_->row(static_cast<std::ptrdiff_t>(k)), deflections_->row_size());
   const std::size_t passing = from_ + k;
@@ -80,8 +80,8 @@ bool StaticCut::follow(std::size_t k) {
   return may && !must_read_(k);
 }
 
-/// Number of passings from k on that are not read. A glance that finds other material than foreseen is repeated once
-/// the stamps before it are carved.
+/// Returns the number of passings from k on that are not read. A glance that finds other material than foreseen is
+/// repeated once the stamps before it are carved.
 std::size_t StaticCut::followers(std::size_t k) {
   std::size_t count = 0;
   while (k + count < count_ && follow(k + count) && (k != reglanced_ || count == 0)) ++count;
@@ -133,7 +133,7 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
     }
     const double next_um = step.rms_um * std::max(kTrust, step.rms_um / before_um);
     out.settled = next_um < std::max(options_.settle_um, options_.settle_fraction * step.size_um);
-    // What swings from reading to reading is stilled by shorter steps.
+    // A deflection that oscillates from reading to reading is damped by shorter steps.
     if (step.rms_um < (1 - kAsForeseen * share) * before_um)
       share = std::min(1.0, kLonger * share);
     else if (step.rms_um > kFall * before_um)

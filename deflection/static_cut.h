@@ -1,5 +1,6 @@
 #pragma once
-// Cutting with the deflected cutter: each tooth passing is brought to its static equilibrium before the next one.
+// Static coupling: cuts the stock with the deflected cutter. Each tooth passing is brought to its static equilibrium of
+// force and deflection before the next one is cut.
 #include <array>
 #include <functional>
 #include <span>
@@ -26,7 +27,7 @@ struct SettleOptions {
                            ///< cut, or by less than ...
   double settle_fraction = 0.01;                    ///< ... this fraction of its rms
   double follow_um = 0.1, follow_fraction = 0.02;   ///< permitted error of an extrapolated deflection, likewise
-  std::size_t longest_gap = ReadingPace::kLongest;  ///< turns of the teeth from reading to reading, at most
+  std::size_t longest_gap = ReadingPace::kLongest;  ///< largest number of passings from reading to reading
 };
 
 /// The surface left by one tooth passing determines the next one. Each is brought to its equilibrium by reading its
@@ -52,21 +53,21 @@ class StaticCut {
   void remember(std::size_t from, std::span<const float> rows, std::size_t row_size, double largest_mm) {
     engager_.remember(from, rows, row_size, largest_mm);
   }
-  /// Begins with stamps[from] ... stamps[from + count - 1]; row -1 of `deflections` is that of the stamp before. The
-  /// rows are filled as their stamps are cut. `must_read`: passings that are read whatever the pace.
+  /// Starts the stretch stamps[from] ... stamps[from + count - 1]. Row -1 of `deflections` belongs to the stamp before;
+  /// the other rows are filled as their stamps are cut. `must_read(k)`: true for passings that have to be read.
   void start(std::size_t from, std::size_t count, removal::DeflectionTable& deflections,
              std::function<bool(std::size_t k)> must_read);
 
   struct Passing {
     int rounds = 0;  ///< 0: not read; the deflection was extrapolated
     bool settled = true;
-    NoEquilibrium reason = NoEquilibrium::swings;  ///< where it has not
-    std::span<const removal::ChipSample> chips;    ///< as read; valid until the call after the next reading
+    NoEquilibrium reason = NoEquilibrium::swings;  ///< why it has not settled
+    std::span<const removal::ChipSample> chips;    ///< as they were read; valid until the call after the next reading
   };
   /// Cuts stamps[from + k], for k = 0, 1 ... in order. If the static deflection does not converge, the closest
   /// approximation is used; if it exceeds removal::DeflectedEngager::kMaxDeflection_mm, that of the previous stamp.
   Passing cut(std::size_t k);
-  /// What the extrapolated deflections missed, as the readings after them show.
+  /// Returns the errors of the extrapolated deflections, as the readings after them show.
   const ReadingPace::Errors& extrapolation_errors() const { return pace_.errors(); }
   /// Writes the cut to the stock. Returns the volume removed since the last commit, mm^3.
   double commit() { return engager_.commit(); }
@@ -88,13 +89,13 @@ class StaticCut {
   ReadingPace pace_;
   std::size_t from_ = 0, count_ = 0;
   std::function<bool(std::size_t)> must_read_;
-  std::size_t carved_ = 0;     ///< stamps of the stretch
-  std::size_t reglanced_ = 0;  ///< where the last glance found other material than foreseen
+  std::size_t carved_ = 0;     ///< number of stamps of the stretch that are carved
+  std::size_t reglanced_ = 0;  ///< where the last glance found other material than predicted
   removal::DeflectionTable* deflections_ = nullptr;
   std::vector<removal::DeflectedChipSample> read_;
-  std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< of this reading and of the previous one, alternating
+  std::array<std::vector<removal::ChipSample>, 2> chips_;  ///< this reading's and the previous one's, alternating
   std::size_t readings_ = 0;
-  int unsettled_in_a_row_ = 0;  ///< readings
+  int unsettled_in_a_row_ = 0;  ///< number of readings
   std::vector<float> swing_;    ///< the deflection a few readings ago
 };
 

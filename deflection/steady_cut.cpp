@@ -111,7 +111,7 @@ std::vector<Vec3> SteadyCutModel::waveform_N(const machine::Material& material, 
           h = std::min(h, chip_mm(ring, m * feed_per_tooth_mm_, phi) + ahead[static_cast<std::size_t>(m - 1)]);
         return h;
       };
-      // Where a tooth that stands out or back begins and ends to cut.
+      // The angles at which a tooth that stands out or back begins and ends to cut.
       const auto fade = [&](double in_cut, double in_air) {
         constexpr int kHalvings = 24;
         if (chip(in_cut) <= 0) return in_cut;

@@ -1,5 +1,6 @@
 #pragma once
-// Forces of a straight cut at constant depth and width, without a stock, as in dynamometer tests.
+// Forces of a straight cut at constant depth and width, without a stock: closed forms and quadrature, as in dynamometer
+// tests. Used by the force fit, by plans and by checks.
 #include <vector>
 
 #include "base/geometry.h"
@@ -34,31 +35,31 @@ class SteadyCutModel {
  public:
   SteadyCutModel(const machine::Tool& tool, const SteadyCut& cut, double ring_mm = 0.25);
 
-  /// Mean over whole turns, without run-out. Integrated by Gauss' rule: exact to rounding with the linear law and the
-  /// closed forms' chip.
+  /// Returns the mean force over whole turns, without run-out. Integrated by Gauss' rule: exact to rounding with the
+  /// linear law and the closed forms' chip.
   Vec3 mean_N(const machine::Material& material) const;
 
-  /// Means over `steps` equal steps of one turn. Step i is turned clockwise from where tooth 1's edge at the tip points
-  /// along the feed by phase_rad + (i + 1/2) 2 pi / steps.
+  /// Returns the mean forces over `steps` equal steps of one turn. Step i is turned clockwise from where tooth 1's edge
+  /// at the tip points along the feed by phase_rad + (i + 1/2) 2 pi / steps.
   std::vector<Vec3> waveform_N(const machine::Material& material, const RunOut& run_out_mm, double phase_rad,
                                int steps) const;
 
-  /// Volume that a tooth removes, mm^3, and mean torque of the spindle, N mm, without run-out.
+  /// Return the volume that a tooth removes, mm^3, and the mean torque of the spindle, N mm, without run-out.
   double chip_mm3() const;
   double torque_mean_Nmm(const machine::Material& material) const;
 
  private:
   struct Ring {
     double radius_mm = 0, width_mm = 0, lag_rad = 0;
-    double sine = 0, cosine = 0;         ///< of the profile's normal angle
+    double sine = 0, cosine = 0;         ///< sine and cosine of the profile's normal angle
     double entry_rad = 0, exit_rad = 0;  ///< counter-clockwise from the feed, entry < exit; equal: never cuts
     bool fades_in = false,
-         fades_out = false;  ///< there the chip begins or ends at zero thickness, not at the side of the work
+         fades_out = false;  ///< the chip begins or ends at zero thickness, not at the side of the work
     double meridian_curvature = 0, parallel_curvature = 0;  ///< 1/mm; 0 with the closed forms' chip
   };
-  /// What a motion by `feed` along the feed's direction takes at phi.
+  /// Chip thickness at phi for a motion by `feed` along the feed's direction, mm.
   static double chip_mm(const Ring& ring, double feed, double phi);
-  /// f(ring, phi, h, weight) at the nodes of Gauss' rule; weights add up to the engaged angle.
+  /// Calls f(ring, phi, h, weight) at the nodes of Gauss' rule; the weights add up to the engaged angle.
   template <class Function>
   void integrate(Function f) const;
 

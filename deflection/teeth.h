@@ -1,5 +1,5 @@
 #pragma once
-// Non-uniform teeth: unequal pitch and run-out.
+// Chips of non-uniform teeth: unequal pitch and run-out (Kline & DeVor 1983).
 #include <algorithm>
 #include <vector>
 
@@ -21,10 +21,10 @@ class Teeth {
   Teeth without_run_out() const;
   int count() const { return static_cast<int>(offset_rad_.size()); }
   double offset_rad(int tooth) const { return offset_rad_[static_cast<std::size_t>(tooth)]; }
-  /// In steps of a turn of so many.
+  /// Offset of a tooth in rotation steps; `steps`: per turn.
   int offset_steps(int tooth, int steps) const;
   double tooth_runout_mm(int tooth, double lag_rad) const;
-  /// Maximum over the teeth.
+  /// Largest run-out of the teeth at this lag, mm.
   double max_runout_mm(double lag_rad) const;
   double runout_mm() const { return runout_mm_; }
   double runout_angle_rad() const { return runout_angle_rad_; }
@@ -33,12 +33,12 @@ class Teeth {
   /// since the m-th previous tooth, t the run-out of each tooth: a tooth that stands back leaves its chip to the next.
   /// Over a revolution the teeth remove as much as uniform ones. even_chip_mm: motion bound of one mean pitch, along
   /// the normal; bulge_mm: the part of it due to the curvature of the envelope, which grows with the square of the
-  /// motion. sine: of the normal's angle kappa. Source: Kline & DeVor, The effect of runout on cutting geometry and
-  /// forces in end milling, Int. J. Mach. Tool Des. Res. 23 (1983) 123-140.
+  /// motion. sine: sine of the normal's angle kappa. Source: Kline & DeVor, The effect of runout on cutting geometry
+  /// and forces in end milling, Int. J. Mach. Tool Des. Res. 23 (1983) 123-140.
   double chip_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm = 0) const {
     return std::max(0.0, room_mm(tooth, even_chip_mm, sine, lag_rad, bulge_mm));
   }
-  /// The same before clipping at zero: minus the distance to the material of a tooth that does not cut.
+  /// Returns the chip before clipping at zero: negative values are the distance of a tooth to the material.
   double room_mm(int tooth, double even_chip_mm, double sine, double lag_rad, double bulge_mm) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// The directions of an edge on the cutter's envelope, and its force in the tool's frame (base/tool_pose.h). This is the
-// only conversion from tangential, radial, axial to x, y, z.
+// Converts forces of an edge from tangential, radial, axial to x, y, z of the tool's frame (base/tool_pose.h). No other
+// file does.
 //
 // The tool turns clockwise seen from above (M3). At the angle phi (counter-clockwise from x) and the profile's normal
 // angle kappa (0: down, pi/2: outwards) the edge moves along t, the envelope's outward normal is n, and m is the
@@ -24,16 +24,16 @@ inline EdgeDirections edge_directions(double sin_kappa, double cos_kappa, double
           {cos_kappa * cos_phi, cos_kappa * sin_phi, sin_kappa}};
 }
 
-/// Force on the tool of an edge with these components, N.
+/// Returns the force on the tool, N, of an edge with these components.
 inline Vec3 force_on_tool(const EdgeForce& e, const EdgeDirections& d) {
   return -(e.tangential_N * d.tangential + e.radial_N * d.normal + e.axial_N * d.meridian);
 }
-/// Its lateral part.
+/// Returns the lateral part of that force.
 inline Vec2 lateral_on_tool(const EdgeForce& e, const Vec2& tangential, const Vec2& normal, const Vec2& meridian) {
   return -(e.tangential_N * tangential + e.radial_N * normal + e.axial_N * meridian);
 }
 
-/// The same component by component, for loops that a compiler turns into vectors.
+/// Computes the same component by component, for loops that the compiler vectorizes.
 struct ForceComponents {
   double x, y, z;
 };

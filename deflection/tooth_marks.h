@@ -1,6 +1,6 @@
 #pragma once
-// Non-uniform teeth (unequal pitch, run-out): tool deflection at the instant at which each tooth passes, for the marks
-// that they leave.
+// Marks of non-uniform teeth (unequal pitch, run-out): the deflection of the tool at the instant at which each tooth
+// passes a point of the envelope.
 #include <cstddef>
 
 #include "deflection/teeth.h"
@@ -16,7 +16,7 @@ class ToothMarks {
  public:
   ToothMarks(const removal::EnvelopeGrid& envelope, const Teeth& teeth);
 
-  /// The cutter with one tooth and no points, for reading the tables.
+  /// Returns the cutter with one tooth and no points, for reading the tables.
   const removal::EnvelopeGrid& envelope() const { return envelope_; }
 
   /// Selects, for stamps from ... from + count - 1, the deflection of each point at the instant at which its tooth
@@ -28,8 +28,8 @@ class ToothMarks {
   void add_run_out(removal::DeflectionTable& deflections, std::size_t passing) const;
 
  private:
-  /// Instant at which a point's tooth passes it, in `steps` of the turn, from the start of its passing; may lie in the
-  /// passing before (>= a pitch) or the next one (< 0).
+  /// Returns the instant at which a point's tooth passes it, in rotation steps from the start of its passing (`steps`:
+  /// per turn); may lie in the passing before (>= a pitch) or the next one (< 0).
   int instant(std::size_t passing, int point, int steps) const;
 
   removal::EnvelopeGrid envelope_;

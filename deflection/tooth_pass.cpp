@@ -18,9 +18,9 @@ std::vector<double> node_heights(double top_mm, double fluted_length_mm) {
 
 namespace {
 
-/// Of tool, holder and axis together. The bar's own stretch is hundredths of a micrometre under a finishing force: it
-/// counts where a spring stands behind it or its stiffness is given, and the tool is rigid along its axis where
-/// neither is.
+/// Returns the axial compliance of tool, holder and axis together. The bar alone stretches by hundredths of a
+/// micrometre in finishing: it counts only where a spring stands behind it or its stiffness is given; otherwise the
+/// tool is rigid.
 double axial_compliance_mm_per_N(const Beam& beam, double axis) {
   const double springs = beam.axial_compliance_mm_per_N(std::numeric_limits<double>::infinity()) + axis;
   return springs > 0 ? beam.axial_compliance_mm_per_N(0) + axis : 0;
@@ -52,7 +52,7 @@ EdgeDirections ToothPassModel::direction(std::uint32_t p, const removal::Envelop
 }
 
 namespace {
-/// Of the envelope, that one sample stands for.
+/// Area of the envelope that one sample stands for.
 double chip_area_mm2(const removal::EnvelopeGrid::Ring& ring, int steps) {
   return ring.width_mm * 2 * kPi * ring.profile.radius_mm / steps;
 }
@@ -124,7 +124,7 @@ void ToothPassModel::for_each_element(const Chips& chips, std::size_t passing, c
     }
     const auto& ring = envelope_.rings[chip.point / static_cast<std::uint32_t>(turn)];
     const EdgeDirections d = direction(chip.point, ring);
-    // Every tooth that passes the point during this tooth passing.
+    // For every tooth that passes the point during this tooth passing:
     for (int j = 0; j < teeth_.count(); ++j) {
       const int m = ((at - tooth_step_[static_cast<std::size_t>(j)] + gone) % turn + turn) % turn;
       if (m < pitch) f(i, m, tooth_chip_mm(j, chip, d, ring, motion));
@@ -173,8 +173,8 @@ void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std
     const int column = static_cast<int>(chip.point % static_cast<std::uint32_t>(steps));
     const EdgeDirections d = direction(chip.point, ring);
     for (int j = 0; j < teeth; ++j) {
-      // The tool turns clockwise, by `at` steps: rotation steps are met backwards. Even teeth: tooth 0 starts at column
-      // 0; others start where their number tells.
+      // The tool turns clockwise by `at` steps, so that rotation steps are passed backwards. With uniform teeth tooth 0
+      // starts at column 0, the others by their number.
       int at = ((j * pitch - column) % steps + steps) % steps;
       double h = chip.thickness_mm;
       if (teeth_.even()) {

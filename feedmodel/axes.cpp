@@ -9,14 +9,14 @@ namespace {
 /// e-foldings after which a following error counts as gone: 100 mm/s at Kp 30 leave under 0.1 um.
 constexpr double kSettlingFoldings = 12.0;
 
-/// Without its filter.
+/// Returns the settling time of an axis without its filter, s.
 template <class Axis>
 double settling_s(const Axis& axis) {
   const double lag = std::isinf(axis.position_gain_per_s) ? 0.0 : 1.0 / axis.position_gain_per_s + axis.velocity_lag_s;
   return axis.dead_time_s + kSettlingFoldings * (lag + axis.exponential_1_s + axis.exponential_2_s);
 }
 
-/// Of x, y, z, a, b, c, as filter_times_s.
+/// Returns the filter windows of x, y, z, a, b, c, s, as filter_times_s does for three axes.
 std::array<double, 6> joint_filter_times_s(const machine::Machine& machine) {
   double jerk_window = 0;
   const auto take = [&](double acceleration, double jerk) {

@@ -1,5 +1,5 @@
 #pragma once
-// Actual axis positions from the commanded ones: filter, exponential lags, position loop.
+// Turns commanded axis positions into actual ones, period by period: filter, exponential lags, position loop.
 #include <array>
 #include <optional>
 
@@ -22,7 +22,7 @@ class Axes {
  public:
   Axes(const machine::Machine& machine, const Vec3& start_mm);
 
-  /// One period: the command at its end; returns the actual position at its end.
+  /// Advances by one period: takes the command at its end, returns the actual position at its end.
   Vec3 operator()(const Vec3& command_mm);
   Vec3 velocity_mm_per_s() const;
 
@@ -30,7 +30,7 @@ class Axes {
   std::array<std::optional<Drive>, 3> axes_;
 };
 
-/// All axes of a machine with rotary ones. A jerk limit of any of them is a window for all.
+/// All axes of a machine with rotary ones. The jerk limit of any axis is a filter window for all.
 class JointAxes {
  public:
   JointAxes(const machine::Machine& machine, const kinematics::Joints& start);
@@ -43,7 +43,7 @@ class JointAxes {
   std::array<std::optional<Drive>, 6> drives_;
 };
 
-/// As settling_time_s, with the rotary axes.
+/// Returns settling_time_s with the rotary axes.
 double joint_settling_time_s(const machine::Machine& machine);
 
 }  // namespace camber::feedmodel

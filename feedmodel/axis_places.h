@@ -1,5 +1,5 @@
 #pragma once
-// Axis positions during moves to the reference point, which is not known in the work frame.
+// Tracks where the axes are while a program moves to reference points, whose place in the work frame may be unknown.
 #include <array>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 
 namespace camber::feedmodel {
 
-/// Of programs with rotary motion: kinematics::place_moves has given this move a start and an end, also where they are
+/// For programs with rotary motion: kinematics::place_moves has given this move a start and an end, also where they are
 /// not known (Move::reference). As it was read, a move with unknown ends has open ones.
 inline bool has_placed_ends(const nc::Move& move) { return move.open_axes == 0 && !move.start_open; }
 
@@ -67,7 +67,7 @@ class AxisPlaces {
     return way;
   }
 
-  /// From where the axes stand to the tool change position.
+  /// Move from the present place of the axes to the tool change position.
   Vec3 way_to_change() const {
     Vec3 way = Vec3::Zero();
     for (int i = 0; i < 3; ++i)
@@ -77,7 +77,7 @@ class AxisPlaces {
 
  private:
   std::array<Vec3, 4> home_;             ///< tool change position and first reference point, then the other points
-  std::array<std::uint8_t, 3> point_{};  ///< at which an axis stands, where it is at home
+  std::array<std::uint8_t, 3> point_{};  ///< reference point at which an axis stands, where it is at one
   std::array<bool, 3> at_home_{true, true, true};
   bool rotary_motion_;
   Vec3 at_mm_ = Vec3::Zero();

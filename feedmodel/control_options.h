@@ -1,5 +1,5 @@
 #pragma once
-// Interpreter options of a machine's control. Joins the table of controls to the table of NC dialects.
+// Joins the table of controls (machine/) to the table of NC dialects (nc/): interpreter options of a machine's control.
 #include <optional>
 
 #include "machine/machine.h"
@@ -15,7 +15,7 @@ const nc::Dialect& dialect_of(const machine::ControlKind& kind);
 /// `inch`: unit of a program without G20 and G21, where known. The rest follows from the dialect.
 nc::InterpreterOptions interpreter_options(const machine::Machine& machine, std::optional<bool> inch);
 
-/// With the other options as given.
+/// Keeps the other options as given.
 nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
 
 /// Decimals of the words that an edit adds or changes: those of the control's least increment, else as many as the

@@ -1,5 +1,5 @@
 #pragma once
-// Corner laws: speed and rounding between two segments.
+// Corner laws: the speed at which a control passes from one segment to the next, and the rounding between them.
 #include <optional>
 
 #include "base/geometry.h"
@@ -9,7 +9,7 @@ namespace camber::feedmodel {
 
 /// Corner speed at which no axis' speed jumps by more than `permitted` [mm/s]:
 /// F_c = min_i permitted_i / |u2_i - u1_i|, the form F / max(dV_axis / V_permitted) of Fanuc's parameter 1783.
-/// Infinite where the directions agree.
+/// Returns infinity where the directions agree.
 double speed_difference_limit(const Vec3& from, const Vec3& to, const Vec3& permitted_mm_per_s);
 
 /// F <= a dt / sqrt(2 (1 - cos theta)).      [mm/s] = [mm/s^2][s]
@@ -22,15 +22,15 @@ struct Blend {
   double radius_mm = 0;
   double turn_rad = 0;
   double speed_mm_per_s = 0;
-  double acceleration_mm_per_s2 = 0;  ///< of the axes in the plane of the arc, before any fraction is applied
+  double acceleration_mm_per_s2 = 0;  ///< axes' acceleration in the plane of the arc, before any fraction is applied
 };
 
 struct BlendOptions {
   double tolerance_mm = 0;         ///< largest distance between the arc and the corner; infinite: only the room counts
   double room_mm = 0;              ///< most that may be cut off each side
   double goal_speed_mm_per_s = 0;  ///< programmed; no faster than this
-  double normal_fraction = 1;      ///< of the plane's acceleration that turns the motion
-  Vec3 velocity_mm_per_s, acceleration_mm_per_s2;  ///< of the axes
+  double normal_fraction = 1;      ///< fraction of the plane's acceleration that turns the motion
+  Vec3 velocity_mm_per_s, acceleration_mm_per_s2;  ///< limits of the axes
 };
 
 /// With the half angle h between the sides (turn = pi - 2h), an arc of radius R touches at R / tan h from the

@@ -29,7 +29,7 @@ double index_time_s(const machine::IndexTable& table, double turn_deg) {
   return rapid_time_s(turn, speed, acceleration) + table.clamp_s;
 }
 
-/// What the events of one block take, each kind by itself.
+/// Times of the events of one block, by kind.
 struct Actions {
   double spindle_s = 0, index_s = 0, codes_s = 0;  // may run along with the motion
   double tool_change_s = 0, pallet_s = 0;          // everything waits for them
@@ -234,7 +234,7 @@ class CycleClock {
   const nc::Interpretation& program_;
   const machine::Machine& machine_;
   AxisPlaces places_;
-  std::optional<kinematics::ProgramJoints> joints_;  ///< of a program with rotary motion, where axes are clamped
+  std::optional<kinematics::ProgramJoints> joints_;  ///< only for a program with rotary motion whose axes are clamped
   Vec3 rapid_speed_, rapid_acceleration_;
   CycleTime out_;
   std::size_t next_ = 0;  // event to come

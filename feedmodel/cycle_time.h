@@ -1,5 +1,5 @@
 #pragma once
-// Cycle time of a program on a machine: cutting, positioning, spindle, tools, codes.
+// Cycle time of a program on a machine: cutting, positioning, spindle, tool changes, codes, by tool.
 #include <cstdint>
 #include <iterator>
 #include <string_view>
@@ -39,10 +39,10 @@ const CycleKind& dominant_kind(const CycleSplit& split);
 /// Times of one tool, or of all.
 struct CycleUse {
   int tool = 0;
-  std::size_t tool_changes = 0;  ///< that brought it in
+  std::size_t tool_changes = 0;  ///< changes that brought it in
   CycleSplit time{};
   double cutting_mm = 0, positioning_mm = 0;
-  std::size_t cutting_moves = 0;       ///< with a length
+  std::size_t cutting_moves = 0;       ///< moves that have a length
   double commanded_s = 0;              ///< cutting length / commanded feed (override taken)
   double acceleration_mm2_per_s2 = 0;  ///< sum of length x acceleration along the path, cutting
 
@@ -71,7 +71,7 @@ struct DistanceHistogram {
 
 struct CycleTime {
   CycleUse all;
-  std::vector<CycleUse> tools;  ///< in the order of their first use
+  std::vector<CycleUse> tools;  ///< tools in the order of their first use
   DistanceHistogram g00, g01;
   std::size_t below_full_rapid = 0;  ///< positioning moves whose slowest axis does not reach its rapid rate
   std::size_t speed_changes = 0;     ///< along the path, of the linear law: what the jerk filter counts

@@ -1,5 +1,5 @@
 #pragma once
-// Dead time between the command of an axis and its position loop.
+// Delays the command of an axis by its dead time, before the position loop.
 #include <cmath>
 #include <cstddef>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// The drive of one axis, linear or rotary: filter, exponential lags, dead time, position loop, backlash.
+// Drive of one axis, linear or rotary: filter, exponential lags, dead time, position loop and backlash in series.
 #include <cmath>
 
 #include "feedmodel/axis_filter.h"
@@ -10,7 +10,7 @@
 
 namespace camber::feedmodel {
 
-/// Of machine::Axis and machine::RotaryAxis alike.
+/// Parameters that machine::Axis and machine::RotaryAxis share.
 struct DriveOptions {
   double filter_s = 0;  ///< moving average
   double exponential_1_s = 0, exponential_2_s = 0;
@@ -51,11 +51,11 @@ class Drive {
               start),
         backlash_(o.backlash, start) {}
 
-  /// One period: the command at its end; returns the actual position at its end.
+  /// Advances by one period: takes the command at its end, returns the actual position at its end.
   double operator()(double command) {
     return backlash_(loop_(dead_time_(exponential_2_(exponential_1_(filter_(command))))));
   }
-  /// Of the motor: backlash is left out.
+  /// Returns the position of the motor, without backlash.
   double velocity_per_s() const { return loop_.velocity_mm_per_s(); }
 
  private:

@@ -16,11 +16,11 @@ struct ExponentialRamp {
   double distance_at(double t_s) const;
   /// The time at which the distance is covered, exact to 1e-12 s. Infinite where it is never covered (F = 0).
   double time_of(double distance_mm) const;
-  /// The same as the printed model has it, once the lags have died out: d/F + (1 - f_s/F)(T1 + T2).
+  /// Returns the same by the printed model, once the lags have died out: d/F + (1 - f_s/F)(T1 + T2).
   double approximate_time_of(double distance_mm) const;
 };
 
-/// From rest to rest: the ramp's time and T1 + T2 for the stop, d/F + 2 (T1 + T2) on a long block.
+/// Returns the time from rest to rest: the ramp's time and T1 + T2 for the stop, d/F + 2 (T1 + T2) on a long block.
 /// Source: Yan & Shirase 1997, eqs. 4-5.
 double exponential_rest_to_rest_s(double distance_mm, double feed_mm_per_s, double t1_s, double t2_s);
 

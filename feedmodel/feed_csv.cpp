@@ -12,7 +12,7 @@
 namespace camber::feedmodel {
 namespace {
 
-/// No "-0.000": the same bytes for a resting axis, whichever way it came to rest.
+/// Avoids "-0.000", so that a resting axis has the same bytes whichever way it came to rest.
 double clean(double value, double half_step) { return value > -half_step && value < half_step ? 0.0 : value; }
 
 /// On the disk of the nearest folder above `path` that is there.

@@ -1,5 +1,5 @@
 #pragma once
-// feed.csv: the predicted axes at every period of the control.
+// Writes feed.csv: the predicted axes at every period of the control.
 #include <span>
 #include <string>
 
@@ -15,13 +15,13 @@ namespace camber::feedmodel {
 /// vx_mm_per_min,vy_mm_per_min,vz_mm_per_min,feed_cmd_mm_per_min,feed_mm_per_min; positions (to 0.01 um) and
 /// speeds are the predicted actual axes, block the 1-based line being commanded.
 ///
-/// With rotary motion, X, Y and Z are those of the machine, feed_mm_per_min is what F counts in the block
+/// In programs with rotary motion X, Y and Z are those of the machine, feed_mm_per_min is what F counts in the block
 /// (JointSample), and the columns go on with the rotary axes of the machine's chain, of a_deg,b_deg,c_deg (to 1e-5
 /// degrees), and the actual pose in the program's frame, tip_x_mm,tip_y_mm,tip_z_mm (to 0.01 um),axis_x,axis_y,axis_z.
 class FeedCsv {
  public:
   /// rotary_axes: letters of those that get columns, in the order a, b, c; empty without rotary motion. Throws
-  /// InputError [file-unwritable].
+  /// Throws InputError [file-unwritable].
   FeedCsv(const nc::Interpretation& program, const std::string& path, const std::string& rotary_axes = {});
   void write(std::span<const TimedSample> samples);
   void write(std::span<const TimedSample> samples, std::span<const JointSample> joints);
@@ -41,7 +41,7 @@ class FeedCsv {
 /// gigabytes. `path`: of the file, which need not be there, nor its folder.
 void check_feed_csv_size(const nc::Interpretation& program, const machine::Machine& machine, const std::string& path,
                          Diagnostics& diagnostics);
-/// The same for motion of `time_s` at `period_s`, with `free_bytes` on the disk.
+/// Does the same for motion of `time_s` at `period_s`, with `free_bytes` on the disk.
 void check_feed_csv_size(double time_s, double period_s, double free_bytes, const std::string& path,
                          Diagnostics& diagnostics);
 

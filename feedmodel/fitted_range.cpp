@@ -22,11 +22,11 @@ constexpr std::size_t kBlocksNamed = 5;
 constexpr std::size_t kRunBlocks = 8;  // so many blocks in a row make a rate
 constexpr double kMoves = 1e-6;        // mm; less is rounding of numbers
 
-/// What one feed move asks of the control.
+/// Demands of one feed move on the control.
 struct Demand {
   double length_mm = 0, feed_mm_per_s = 0;
-  double corner_rad = 0;    ///< at its start, against the feed move before it
-  double radius_mm = 0;     ///< of curvature; 0: a line
+  double corner_rad = 0;    ///< angle at its start, against the feed move before it
+  double radius_mm = 0;     ///< radius of curvature; 0: a line
   double blocks_per_s = 0;  ///< over the last kRunBlocks, 0 where fewer follow each other
   std::array<bool, 3> axis{};
 };
@@ -94,7 +94,7 @@ class GuessSize {
   GuessSize(const nc::Interpretation& program, const machine::Machine& machine)
       : program_(program), machine_(machine) {}
 
-  /// Of these moves together.
+  /// Returns the range of these moves together.
   std::string of(const std::vector<std::uint32_t>& moves) {
     if (predicted_s_.empty()) {
       predicted_s_ = motion_times(program_, machine_).move_s;
@@ -117,7 +117,7 @@ class GuessSize {
   std::vector<double> predicted_s_, stopping_s_;
 };
 
-/// One kind of leaving the range.
+/// One way of leaving the range.
 struct Beyond {
   double length_mm = 0;
   std::vector<std::uint32_t> lines, moves;

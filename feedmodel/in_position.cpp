@@ -28,7 +28,7 @@ class LinearFollower {
   Vec3 off_mm_ = Vec3::Zero();
 };
 
-/// With the rotary axes, whose width is the same number of degrees.
+/// Includes the rotary axes, whose width is the same number of degrees.
 class JointFollower {
  public:
   JointFollower(const machine::Machine& machine, const Segment& segment, const SegmentMotion& motion, double from_s,
@@ -50,7 +50,7 @@ class JointFollower {
   JointAxes axes_;
 };
 
-/// From `from_s`, where the follower is, to the end of the motion, and on until it is within the width.
+/// Follows from `from_s` to the end of the motion, and on until the axis is within the width.
 template <class Follower>
 double wait_of(Follower follower, double from_s, double end_s, double period_s, double width, double max_s) {
   const auto steps = static_cast<long>(std::ceil((end_s - from_s) / period_s));

@@ -1,5 +1,5 @@
 #pragma once
-// In-position wait of a control at a stop.
+// In-position wait: the time that a control waits at a stop until its axes are there.
 #include "feedmodel/joint_map.h"
 #include "feedmodel/segment_motion.h"
 #include "machine/machine.h"

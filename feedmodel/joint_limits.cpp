@@ -10,7 +10,7 @@
 namespace camber::feedmodel {
 namespace {
 
-/// Of a joint's acceleration, that the curvature of its path may take.
+/// Fraction of a joint's acceleration that the curvature of its path may take.
 constexpr double kTurningFraction = 0.75;
 constexpr double kPieceRad = kPi / 180, kArcPieceRad = kPi / 36;
 constexpr int kMaxPieces = 720;

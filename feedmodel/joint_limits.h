@@ -1,5 +1,5 @@
 #pragma once
-// Limits of a path in joints: no joint faster, and none accelerated more, than its axis allows.
+// Limits of a path from its joints: no joint may be faster, or accelerated more, than its axis allows.
 #include <functional>
 
 #include "feedmodel/joint_map.h"

@@ -1,5 +1,6 @@
 #pragma once
-// From what a program names to the joints of the machine, and to the tool's pose in the part's frame.
+// Maps what a program names (tip or axis positions, angles) to the joints of the machine and to the tool's pose in the
+// part's frame.
 #include "base/tool_pose.h"
 #include "feedmodel/turn.h"
 #include "kinematics/chain.h"
@@ -8,10 +9,10 @@
 
 namespace camber::feedmodel {
 
-/// Whether the program turns rotary axes of the machine's chain: only then has Segment a turn.
+/// Returns whether the program turns rotary axes of the machine's chain; only then does Segment have a turn.
 bool has_rotary_motion(const nc::Interpretation& program, const machine::Machine& machine);
 
-/// Where the work offset or the tool length is not known, the program's zero is the machine's, and tools
+/// If the work offset or the tool length is not known, the program's zero is the machine's, and tools
 /// have the length 0.
 class JointMap {
  public:

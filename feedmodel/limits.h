@@ -1,5 +1,5 @@
 #pragma once
-// Limits of a block: maximum speed and acceleration along a direction, in a plane, on an arc.
+// Limits of a block by its axes: maximum speed and acceleration along a direction, in a plane, on an arc.
 #include "base/geometry.h"
 #include "machine/machine.h"
 
@@ -14,7 +14,7 @@ double limit_along(const Vec3& direction, const Vec3& limits);
 /// normal; axes that are square to the plane do not count. limits > 0, infinity allowed.
 double limit_in_plane(const Vec3& normal, const Vec3& limits);
 
-/// Of feed moves.
+/// Limits of feed moves.
 Vec3 velocity_limits_mm_per_s(const machine::Machine& machine);
 Vec3 acceleration_limits_mm_per_s2(const machine::Machine& machine);
 

@@ -13,7 +13,7 @@ double squared(double v) { return v * v; }
 /// Speed squared that the segment can win or lose along its length.
 double gain(const PlanRow& row) { return row.length_mm > 0 ? 2.0 * row.acceleration_mm_per_s2 * row.length_mm : 0.0; }
 
-/// Of it, what the control counts on for braking.
+/// Returns the acceleration that the control counts on for braking.
 double brakes(const PlanRow& row) { return gain(row) * row.planned_fraction; }
 
 }  // namespace
@@ -30,7 +30,7 @@ void BrakingRows::add(const PlanRow& row) {
   instant_.push_back(std::isinf(gain(row)));
 }
 
-/// What may be the speed squared at the entry of a row, its neighbours considered.
+/// Returns the greatest speed squared at the entry of a row that its neighbours allow.
 double BrakingRows::entry_cap(std::size_t i, std::size_t from) const {
   double v = std::min(entry_[i], limit_[i]);
   if (i > from) v = std::min(v, limit_[i - 1]);
@@ -45,7 +45,7 @@ void BrakingRows::backward_all(std::size_t from, std::size_t end) {
   }
 }
 
-/// The same with a horizon: the entry of row i is min over j from i to the horizon of cap_j + S_j - S_i, where S
+/// Does the same with a horizon: the entry of row i is min over j from i to the horizon of cap_j + S_j - S_i, where S
 /// sums what the rows can brake, and rest at the horizon. A queue holds the candidates j with increasing
 /// cap_j + S_j, nearest in front.
 void BrakingRows::backward_window(std::size_t from, std::size_t end, std::size_t depth) {

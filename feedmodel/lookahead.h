@@ -1,5 +1,5 @@
 #pragma once
-// Look-ahead: maximum entry speed of each segment such that the limits ahead can be met.
+// Lookahead: finds the greatest entry speed of each segment from which the limits ahead can still be met.
 #include <cstddef>
 #include <vector>
 
@@ -9,12 +9,12 @@ struct PlanRow {
   double length_mm = 0;
   double speed_limit_mm_per_s = 0;
   double acceleration_mm_per_s2 = 0;
-  double planned_fraction = 1;      ///< of the acceleration, that may be counted on for braking
+  double planned_fraction = 1;      ///< fraction of the acceleration that may be counted on for braking
   bool joined = false;              ///< counts as one with the next for the horizon
   double entry_speed_mm_per_s = 0;  ///< in: limit of the corner; out: planned speed
 };
 
-/// What braking needs of the rows, a list for each: of a long program the rows themselves are not kept.
+/// The columns of the rows that braking needs: of a long program the rows themselves are not kept.
 class BrakingRows {
  public:
   std::size_t size() const { return entry_.size(); }
@@ -25,7 +25,7 @@ class BrakingRows {
   /// Lowers the entry speeds of rows from ... end - 1, which are a path of their own, to what braking allows:
   /// v_i^2 <= v_{i+1}^2 + 2 a_i L_i, at rest after the last one. `depth`: see plan_speeds(). Once for each row.
   void brake(std::size_t from, std::size_t end, std::size_t depth);
-  /// Ends the work: the entry speeds alone, mm/s.
+  /// Finishes and returns the entry speeds, mm/s.
   std::vector<double> take_entry_speeds();
 
  private:

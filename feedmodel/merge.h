@@ -1,5 +1,5 @@
 #pragma once
-// Short straight lines that lie within a tolerance of one longer line are driven as that line.
+// Merging: short straight lines that lie within a tolerance of one longer line are driven as that line.
 #include <cstddef>
 #include <span>
 
@@ -16,10 +16,10 @@ inline constexpr std::size_t kMaxMergedLines = 100;
 /// merges by it (ControlKind::g64_p_merges), else the control's own. 0: no merging.
 double merge_tolerance_mm(const nc::ModalState& state, const machine::Control& control);
 
-/// Index after the last move of the run of lines that begins at `first` and is driven as one line: every corner
-/// that is passed over lies within `tolerance_mm` of the straight line from the run's start to its end.
-/// Only straight feed moves of one state and one feed are merged. Returns first + 1 where nothing merges.
-/// Source: LinuxCNC user manual, G64 P- Q- ("naive cam detector").
+/// Returns the index after the last move of the run of lines that begins at `first` and is driven as one line: every
+/// corner that is passed over lies within `tolerance_mm` of the straight line from the run's start to its end. Only
+/// straight feed moves of one state and one feed are merged. Returns first + 1 where nothing merges. Source: LinuxCNC
+/// user manual, G64 P- Q- ("naive cam detector").
 std::size_t merged_run_end(std::span<const nc::Move> moves, std::size_t first, double tolerance_mm);
 
 }  // namespace camber::feedmodel

@@ -12,11 +12,11 @@ namespace {
 using nc::Contouring;
 
 struct ContouringCode {
-  std::string_view set;   ///< its parameter set
-  std::string_view text;  ///< as programs have it
+  std::string_view set;   ///< name of its parameter set
+  std::string_view text;  ///< code as programs have it
 };
 
-/// In the order of nc::Contouring.
+/// One row per value of nc::Contouring, in its order.
 constexpr std::array<ContouringCode, 6> kContouring{{{"", ""},
                                                      {"g08_p1", "G08 P1"},
                                                      {"g05_p10000", "G05 P10000"},
@@ -33,7 +33,7 @@ bool has_set(const machine::Machine& machine, std::string_view name) {
   return std::ranges::any_of(machine.modes, [&](const auto& mode) { return mode.first == name; });
 }
 
-/// What the machine file does not know of the modes of a state.
+/// Returns the modes of a state that the machine file does not describe.
 void unknown_modes(const nc::ModalState& state, const machine::Machine& machine, std::set<std::string>& messages) {
   const auto add = [&](std::string_view code, std::string_view means, std::string_view sets) {
     messages.insert(fmt::format("{} ({}) is on, and the machine file has no {}; [control] is used", code, means, sets));

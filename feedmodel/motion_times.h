@@ -1,5 +1,5 @@
 #pragma once
-// The time of every move of a program, the axes alone: no tools, no spindle, no codes.
+// Times of the moves of a program by the motion of the axes alone, without tools, spindle and codes.
 #include <cstdint>
 #include <vector>
 
@@ -9,7 +9,7 @@
 namespace camber::feedmodel {
 
 struct MotionTimes {
-  std::vector<double> move_s;        ///< of each move; merged lines stand with the last of them
+  std::vector<double> move_s;        ///< one per move; merged lines count at the last of them
   std::vector<float> acceleration;   ///< along the path of each cutting move's last segment, mm/s^2; 0: none
   std::size_t speed_changes = 0;     ///< along the path and of positionings
   std::size_t below_full_rapid = 0;  ///< positionings

@@ -1,5 +1,5 @@
 #pragma once
-// Rotary axes of a program, move by move, for the path builder.
+// Gives the path builder the rotary motion of a program, move by move.
 #include <cstddef>
 #include <memory>
 
@@ -14,9 +14,9 @@ class MoveTurns {
   /// Requires has_rotary_motion.
   MoveTurns(const nc::Interpretation& program, const machine::Machine& machine);
 
-  /// Goes on to a move; moves are asked for in the order of the program.
+  /// Advances to a move; moves are asked for in the order of the program.
   const kinematics::MoveJoints& at(std::size_t move);
-  /// Of the last at().
+  /// Result of the last at().
   const kinematics::MoveJoints& now() const { return now_; }
   /// The first move from `move` to `end` that turns an axis; `end` if none does.
   std::size_t next_turning(std::size_t move, std::size_t end) const;

@@ -25,7 +25,7 @@ class Block {
   Block(const PlanRow& row, double period_s)
       : length_(row.length_mm), limit_(row.speed_limit_mm_per_s), a_(row.acceleration_mm_per_s2), t_(period_s) {}
 
-  /// One period at the speed from which the block can still stop at its end.
+  /// Advances one period at the speed from which the block can still stop at its end.
   void step() {
     const double gain = a_ * t_, half = gain / 2;
     const double reach = half * half + a_ * (2 * (length_ - way_) - speed_ * t_);
@@ -47,7 +47,7 @@ class Block {
     return n;
   }
 
-  /// The same at the highest speed, until the block must brake.
+  /// Does the same at the highest speed, until the block must brake.
   double cruise() {
     if (speed_ < kTop * limit_) return 0;
     const double way = limit_ * t_, n = std::floor((length_ - way_ - limit_ * limit_ / (2 * a_)) / way) - 2;

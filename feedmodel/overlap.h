@@ -11,7 +11,7 @@
 
 namespace camber::feedmodel {
 
-/// Of a corner that turns by this angle; infinite for none.
+/// Returns the speed limit of a corner that turns by this angle; infinite for none.
 double overlap_corner_speed(double turn_rad, double acceleration_mm_per_s2, double tolerance_mm);
 
 /// v_b without its last term. next_is_last: a rest follows the next block; the control then reckons v_r with half of
@@ -30,7 +30,7 @@ struct OverlapOptions {
   double period_s = 0.001;
 };
 
-/// From rest to rest. Requires a finite acceleration, and a speed limit and a length above zero.
+/// Returns the time from rest to rest. Requires a finite acceleration, and a speed limit and a length above zero.
 OverlapTimes overlap_times(const PlanRow& row, const OverlapOptions& options);
 
 }  // namespace camber::feedmodel

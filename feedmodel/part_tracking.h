@@ -1,5 +1,5 @@
 #pragma once
-// Programs with rotary motion in the part's frame: samples of the tool's tip, and where on the path they are.
+// Samples of programs with rotary motion in the part's frame: poses of the tool, and their places on the path.
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,7 +12,7 @@ namespace camber::feedmodel {
 
 /// Joints and tool of one sample, actual.
 struct ToolPlace {
-  ToolPose tool;  ///< in the frame of the program's X Y Z
+  ToolPose tool;  ///< pose in the frame of the program's X Y Z
   kinematics::Joints joints;
 };
 
@@ -20,10 +20,10 @@ struct ToolPlace {
 /// mean over the period before).
 class PartSamples {
  public:
-  /// What samples() and tools() then hold, until the next call.
+  /// Number of entries that samples() and tools() then hold, until the next call.
   void take(std::span<const TimedSample> samples, std::span<const JointSample> joints);
   std::span<const TimedSample> samples() const { return samples_; }
-  /// What was taken.
+  /// The samples that were taken.
   std::span<const TimedSample> axes() const { return axes_; }
   std::span<const JointSample> joints() const { return joints_; }
   std::span<const ToolPlace> tools() const { return tools_; }
@@ -37,8 +37,8 @@ class PartSamples {
   double last_s_ = 0;
 };
 
-/// As closest_on_move for a tool and the angles of its axes, of which 1 rad counts as PartPath::kLever_mm: the place
-/// where a tip that stands still is turned by other blocks. `in_part`: path.moves_in_part().
+/// Does what closest_on_move does, for a tool and the angles of its axes, of which 1 rad counts as PartPath::kLever_mm:
+/// the place where a tip that stands still is turned by other blocks. `in_part`: path.moves_in_part().
 PathPlace closest_on_part(const kinematics::PartPath& path, const nc::Interpretation& in_part, std::uint32_t move,
                           const ToolPlace& is, double from_u, double to_u);
 

@@ -35,7 +35,7 @@ constexpr double kReversal = 1e-6;
 /// Shorter pieces than this (mm) are rounding of numbers, not path.
 constexpr double kNoLength = 1e-9;
 
-/// One block (or run of merged blocks) before its ends are rounded.
+/// A block (or a run of merged blocks) before its ends are rounded.
 struct Element {
   Segment segment;
   bool line = true;
@@ -43,10 +43,10 @@ struct Element {
   nc::PathControl control = nc::PathControl::blend;
   double tolerance_mm = 0;
   bool stops = false;           ///< G9
-  bool taps = false;            ///< in step with the spindle, from rest to rest
-  double from_s = 0;            ///< where the rounding at its start ends
-  double less_fraction = 0;     ///< of its acceleration, kept free for the corners' speed steps
-  double planned_fraction = 1;  ///< of its acceleration, that the lookahead counts on
+  bool taps = false;            ///< runs in synchronism with the spindle, from rest to rest
+  double from_s = 0;            ///< length at which the rounding at its start ends
+  double less_fraction = 0;     ///< fraction of its acceleration reserved for the speed steps at corners
+  double planned_fraction = 1;  ///< fraction of its acceleration that the lookahead counts on
   /// The limits count for its joints, which are not its X Y Z: under tool-centre-point control, unless the control does
   /// not look at them.
   bool joint_limits = false;
@@ -54,13 +54,13 @@ struct Element {
   bool turns() const { return segment.turn && segment.turn->turns(); }
 };
 
-/// How one element passes into the next.
+/// Transition from one element to the next.
 struct Junction {
   double speed_mm_per_s = 0;
   double less_fraction = 0;
-  double wait_s = 0;  ///< at a stop
+  double wait_s = 0;  ///< time of a stop
   std::optional<Blend> blend;
-  double trim = 0;        ///< of a rounding that turns; 0: none
+  double trim = 0;        ///< length that a turning rounding takes off; 0: none
   bool overlaps = false;  ///< the next element begins while this one brakes, from this speed at most
   double overlap_speed_mm_per_s = kNoLimit;
 };
@@ -120,7 +120,7 @@ Vec3 speed_differences_mm_per_s(const machine::Machine& machine, const machine::
   return out;
 }
 
-/// Of rotary axes: each one's own, or the number of the corner law in degrees.
+/// Returns the speed difference of rotary axes: each one's own, or the number of the corner law in degrees.
 Vec3 rotary_differences_rad_per_s(const machine::Machine& machine, const machine::Corner& corner) {
   Vec3 out;
   for (int i = 0; i < 3; ++i) {
@@ -188,7 +188,7 @@ class Builder {
   }
 
  private:
-  /// Its start or its end is not known, and nobody has taken it to be anywhere (kinematics::place_moves).
+  /// Returns whether the move's start or end is not known, and kinematics::place_moves has not assumed one.
   bool unplaced(const nc::Move& move) const { return move.reference && !(turns_ && has_placed_ends(move)); }
 
   /// A positioning of which the axes end together: one that turns, or under tool-centre-point control.
@@ -196,7 +196,7 @@ class Builder {
     return turns_ && (turning_ || state.tip_control != nc::TipControl::off);
   }
 
-  /// Index after the last move that is driven as one with move i. What turns is not merged.
+  /// Returns the index after the last move that is driven as one with move i. Moves that turn are not merged.
   std::size_t run_end(std::size_t i, const nc::ModalState& state) const {
     if (turning_) return i + 1;
     const std::span<const nc::Move> moves = program_.moves;
@@ -396,7 +396,7 @@ class Builder {
     return j;
   }
 
-  /// No corner: the limits of the two sides are all there is.
+  /// Handles a transition without a corner: only the limits of the two sides apply.
   static Junction pass() {
     Junction j;
     j.speed_mm_per_s = kNoLimit;
@@ -613,7 +613,7 @@ class Builder {
   const double feed_factor_;
   const bool dog_leg_ = machine_.cycle.rapid_path == machine::RapidPath::dogleg;
   AxisPlaces places_;
-  std::optional<MoveTurns> turns_;  ///< of a program with rotary motion
+  std::optional<MoveTurns> turns_;  ///< only for a program with rotary motion
   bool turning_ = false;            ///< the move under way
   const JointLimits feed_limits_ = feed_limits(machine_), rapid_limits_ = rapid_limits(machine_);
   std::optional<Element> previous_;

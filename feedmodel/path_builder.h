@@ -1,5 +1,5 @@
 #pragma once
-// From moves to the segments that the control commands: lines merged, corners rounded, limits set.
+// Builds the segments that the control commands from the moves of a program: lines merged, corners rounded, limits set.
 #include <functional>
 
 #include "feedmodel/segment.h"

@@ -7,7 +7,7 @@
 namespace camber::feedmodel {
 namespace {
 
-/// Places that are this much nearer win over an earlier one; less is rounding.
+/// A later place wins if it is nearer by more than this; less is rounding.
 constexpr double kNearerMm = 1e-9;
 
 /// So far from the path the place is lost (a control may cut a corner between rapids widely): search up to the command.
@@ -19,7 +19,7 @@ double fraction_on_line(const nc::Move& move, const Vec3& point_mm) {
   return square > 0 ? (point_mm - move.start_mm).dot(line) / square : 1.0;
 }
 
-/// Of the turns on which the point's angle lies, the one nearest to where the search begins.
+/// Returns, of the turns on which the point's angle lies, the one nearest to the start of the search.
 double fraction_on_arc(const nc::Move& move, const nc::Arc& arc, const Vec3& point_mm, double from_u) {
   const auto in_plane = [&](Vec3 v) -> Vec3 { return v - arc.normal * arc.normal.dot(v); };
   const Vec3 start = in_plane(move.start_mm - arc.center_mm), at = in_plane(point_mm - arc.center_mm);

@@ -1,5 +1,6 @@
 #pragma once
-// Where on the programmed path the axes really are: behind the command, often by several short blocks.
+// Finds the place of the actual axes on the programmed path. They are behind the command, often by several short
+// blocks.
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -13,7 +14,7 @@ namespace camber::feedmodel {
 struct PathPlace {
   std::uint32_t move = 0;
   double u = 0;            ///< fraction of the move's length, in [0, 1]
-  double distance_mm = 0;  ///< from the actual position to that place
+  double distance_mm = 0;  ///< distance of the actual position from that place
 };
 
 struct PathTrackerOptions {
@@ -27,9 +28,9 @@ struct PathTrackerOptions {
 PathPlace closest_on_move(const nc::Interpretation& program, std::uint32_t move, const Vec3& point_mm, double from_u,
                           double to_u);
 
-/// How a path is measured that nc::Move does not tell (part_tracking.h).
+/// Measure of a path that nc::Move alone does not describe (part_tracking.h).
 struct PathMeasure {
-  /// As closest_on_move, for the tool of the sample.
+  /// Does what closest_on_move does, for the tool of the sample.
   std::function<PathPlace(std::uint32_t move, double from_u, double to_u)> closest{};
   std::function<double(std::uint32_t move)> length_mm{};
 };
@@ -45,7 +46,7 @@ class PathTracker {
   explicit PathTracker(const nc::Interpretation& program, const PathTrackerOptions& options = {})
       : program_(program), options_(options) {}
 
-  /// Of a path that is measured otherwise; `closest` is asked for the sample that is passed.
+  /// For a path that is measured otherwise; `closest` is asked for the sample that is passed.
   PathTracker(const nc::Interpretation& program, PathMeasure measure)
       : program_(program), measure_(std::move(measure)) {}
 

@@ -31,13 +31,13 @@ PlanRow row_of(const Segment& s) {
           .entry_speed_mm_per_s = s.entry_limit_mm_per_s};
 }
 
-/// What each change of speed takes longer than constant acceleration has it.
+/// Returns the time by which each change of speed is longer than with constant acceleration.
 double delay_s(const machine::Machine& machine, std::size_t mode) {
   const machine::AccelerationTimes law = acceleration_law_of(machine, mode);
   return machine.cycle.jerk_filter_s + (law.law == AccelerationLaw::bell ? 0.5 * law.bell_time_s : 0.0);
 }
 
-/// How long the slowest axis of a positioning still brakes when the next one may begin.
+/// Returns how long the slowest axis of a positioning still brakes when the next one may begin.
 double overlap_time_s(const Segment& s, double overlap_percent) {
   Eigen::Index slowest = 0;
   axis_times_s(s.way_mm, s.axis_speed_mm_per_s, s.axis_acceleration_mm_per_s2).maxCoeff(&slowest);
@@ -135,7 +135,7 @@ class Planner {
   /// A stop at which the control may wait for the axes.
   struct Stop {
     std::size_t index = 0;
-    double rest_s = 0;  ///< of the rests that follow
+    double rest_s = 0;  ///< time of the rests that follow
   };
   /// Segments from one change of the law of acceleration to the next.
   struct Stretch {
@@ -278,7 +278,8 @@ class Planner {
     if (next) begins_s_ = std::min(found.next_start_s, time.end_s());
   }
 
-  /// The same for a block that is entered, or left, at speed (lines rounded with their neighbours at the other end).
+  /// Does the same for a block that is entered, or left, at speed (lines rounded with their neighbours at the other
+  /// end).
   static OverlapTimes trapezoid_times(const Trapezoid& profile, const OverlapOptions& options) {
     const double end_s = options.start_s + profile.duration_s();
     const double brake_s =
@@ -344,8 +345,8 @@ class Planner {
 
   const nc::Interpretation& program_;
   const machine::Machine& machine_;
-  std::vector<machine::AccelerationTimes> laws_;  ///< by mode
-  std::vector<double> delay_s_;                   ///< by mode
+  std::vector<machine::AccelerationTimes> laws_;  ///< one per mode
+  std::vector<double> delay_s_;                   ///< one per mode
   std::optional<JointMap> map_;                   // of a program with rotary motion
   std::vector<Stretch> stretches_;                // in order
   std::vector<Stop> stops_;                       // in order

@@ -1,5 +1,5 @@
 #pragma once
-// Contour error of a tool pose: how far tip and axis are off the path of poses that the control commands.
+// Contour error of tool poses: distance of tip and axis from the path of poses that the control commands.
 #include <cstddef>
 #include <deque>
 
@@ -20,7 +20,7 @@ class PoseContour {
   Error operator()(const ToolPose& command, const ToolPose& actual);
 
  private:
-  std::deque<ToolPose> commands_;  ///< from the one that was nearest last
+  std::deque<ToolPose> commands_;  ///< commands from the nearest one of the last call on
 };
 
 /// Maximum and root mean square over samples.

@@ -1,5 +1,5 @@
 #pragma once
-// The servo of one axis: a position loop of gain Kp around a velocity loop that lags.
+// Servo of one axis: a position loop of gain Kp around a velocity loop with a lag, Tv x'' + x' = Kp (c - x) + Kf c'.
 
 namespace camber::feedmodel {
 

@@ -58,7 +58,7 @@ class Sampler {
 
   double time_of(std::uint64_t k) const { return static_cast<double>(k) * period_s_; }
 
-  /// What a positioning that has not ended yet still has to go, as an offset.
+  /// Returns the rest of a positioning that has not ended yet, as an offset.
   Vec3 left_of_previous(double t_s) const {
     if (!previous_) return Vec3::Zero();
     const SegmentMotion& motion = previous_->motion;

@@ -75,7 +75,7 @@ class JointSampler {
            deg_from_rad((a.rotary_rad - b.rotary_rad).norm()) > kJointJump;
   }
 
-  /// What a segment that has not ended yet still has to go, as an offset.
+  /// Returns the rest of a segment that has not ended yet, as an offset.
   void add_rest_of_previous(double t_s, ProgramPose& pose) const {
     if (!previous_) return;
     const SegmentMotion& motion = previous_->motion;

@@ -1,5 +1,5 @@
 #pragma once
-// Speed over time along one segment: constant acceleration, trapezoid or triangle.
+// Speed over time along one segment with constant acceleration: a trapezoid or a triangle.
 
 namespace camber::feedmodel {
 

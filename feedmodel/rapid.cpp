@@ -15,7 +15,7 @@ Trapezoid axis_profile(double distance_mm, double speed, double acceleration) {
 
 constexpr double kInstant = 1e-9;  // s; axes that move by more in this time jump
 
-/// All three axes of one positioning.
+/// The three axes of one positioning.
 class AxesApart {
  public:
   AxesApart(const Vec3& from_mm, const Vec3& to_mm, const Vec3& speed, const Vec3& acceleration)

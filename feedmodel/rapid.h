@@ -1,5 +1,5 @@
 #pragma once
-// Positioning (G0) with every axis on its own: times, and the corner points of the dog-leg path.
+// Positioning (G0) in which every axis moves on its own: times, and the corners of the dog-leg path.
 #include <vector>
 
 #include "base/geometry.h"
@@ -9,7 +9,7 @@ namespace camber::feedmodel {
 
 /// Top speed of each axis in G0, override taken: the lower of rapid and max_velocity.
 Vec3 rapid_speeds_mm_per_s(const machine::Machine& machine);
-/// Of each axis in G0, no more than the control has along the path.
+/// Acceleration of each axis in G0, at most that of the control along the path.
 Vec3 rapid_accelerations_mm_per_s2(const machine::Machine& machine);
 
 /// Time of each axis from rest to rest: s/F + F/a where the distance s is at least F^2/a, else 2 sqrt(s/a).
@@ -24,13 +24,14 @@ double rapid_time_s(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const V
 bool below_full_rapid(const Vec3& distance_mm, const Vec3& speed_mm_per_s, const Vec3& acceleration_mm_per_s2);
 
 /// The path of a positioning: its start, the places where an axis has arrived while others still move, its end.
-/// With acceleration the path between them is curved near the ends. Source: Yan & Shirase 1997 (dog-leg path).
+/// Because of the accelerations the path between them is curved near the ends. Source: Yan & Shirase 1997 (dog-leg
+/// path).
 std::vector<Vec3> dog_leg(const Vec3& from_mm, const Vec3& to_mm, const Vec3& speed_mm_per_s,
                           const Vec3& acceleration_mm_per_s2);
 
-/// Places of the tool in a positioning, `from_mm` and `to_mm` included, in order, at most `step_mm` apart: along the
-/// straight line, or, with rapid_path = "dogleg", where each axis on its own is at the same instant (the bent ends as
-/// well). Between axes without a limit, which arrive at once, the way is straight.
+/// Returns places of the tool in a positioning, `from_mm` and `to_mm` included, in order, at most `step_mm` apart:
+/// along the straight line, or, with rapid_path = "dogleg", where each axis on its own is at the same instant (the bent
+/// ends as well). Between axes without a limit, which arrive at once, the way is straight.
 std::vector<Vec3> positioning_places(const machine::Machine& machine, const Vec3& from_mm, const Vec3& to_mm,
                                      double step_mm);
 

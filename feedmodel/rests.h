@@ -1,5 +1,5 @@
 #pragma once
-// Where the path rests because the control waits for something that is not motion.
+// Rests: places at which the path stops because the control waits for something that is not motion.
 #include <cstdint>
 #include <vector>
 

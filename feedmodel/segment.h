@@ -1,6 +1,6 @@
 #pragma once
-// One piece of the path that the control commands: a straight line, a circular arc (helix) or a positioning whose axes
-// move each on its own, with its limits; or a rest.
+// A segment of the path that the control commands, with its limits: a straight line, a circular arc (helix), a
+// positioning whose axes move each on its own, or a rest.
 #include <cstdint>
 #include <memory>
 
@@ -25,8 +25,8 @@ struct Segment {
   double speed_limit_mm_per_s = 0;
   double axis_limit_mm_per_s = machine::kNoLimit;  ///< limit of the maximum axis speeds along it
   double acceleration_mm_per_s2 = 0;               ///< along the path
-  double planned_fraction = 1;                     ///< of the acceleration, that the lookahead counts on
-  double entry_limit_mm_per_s = 0;                 ///< at its start: limit of the corner before it
+  double planned_fraction = 1;                     ///< fraction of the acceleration that the lookahead counts on
+  double entry_limit_mm_per_s = 0;                 ///< speed limit of the corner at its start
   double feed_command_mm_per_s = 0;                ///< programmed (rapid: top speed of the axes along it)
   double dwell_s = 0;                              ///< a rest instead of a motion: length 0, speed limit 0
   /// A positioning move from rest to rest, each axis on its own (dog-leg path): distance, speed and acceleration of the
@@ -42,7 +42,7 @@ struct Segment {
   /// The next segment begins while this one brakes (ControlKind::turning_blocks_overlap), from this speed at most.
   bool overlaps = false;
   double overlap_speed_mm_per_s = machine::kNoLimit;
-  std::shared_ptr<const Turn> turn{};  ///< of every segment of a program with rotary motion; null: without
+  std::shared_ptr<const Turn> turn{};  ///< rotary motion; null in programs without it
 
   /// Of an arc's motion, the fraction within the plane of the turn.
   double in_plane() const;

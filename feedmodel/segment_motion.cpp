@@ -6,7 +6,7 @@
 namespace camber::feedmodel {
 namespace {
 
-/// Beyond this fraction of its time a delay would turn the motion back: then all of the phase is slowed alike.
+/// Beyond this fraction of its time a delay would reverse the motion; the whole phase is slowed instead.
 constexpr double kMaxDelay = 2.0 / 3.0;
 
 double distance_along(const SegmentMotion& m, double t_s) {

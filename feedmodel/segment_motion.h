@@ -1,5 +1,5 @@
 #pragma once
-// Where on a segment the control is at a time: the speed law of the segment, whichever it is.
+// Position on a segment at a time, by the speed law of the segment, whichever it is.
 #include <array>
 
 #include "feedmodel/exponential.h"
@@ -28,13 +28,13 @@ struct SegmentMotion {
 
   // axes_apart: from rest to rest.
   std::array<Trapezoid, 3> axes;
-  double axes_s = 0;  ///< of the slowest axis; duration_s holds the delay of a jerk filter as well
+  double axes_s = 0;  ///< time of the slowest axis; duration_s also has the delay of a jerk filter
 
   /// Length along the segment at the time t_s since its start, clamped to its ends; 0 for a rest, and for axes_apart.
   double distance_at(const Segment& segment, double t_s) const;
   /// Place on the segment at the time t_s since its start, clamped to its ends. Without Turn::bend_mm.
   Vec3 point_at(const Segment& segment, double t_s) const;
-  /// The same with the rotary axes. Requires segment.turn.
+  /// Does the same with the rotary axes. Requires segment.turn.
   ProgramPose pose_at(const Segment& segment, double t_s) const;
 };
 

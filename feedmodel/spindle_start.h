@@ -1,5 +1,5 @@
 #pragma once
-// How long a spindle takes from one speed to another.
+// Time that a spindle takes from one speed to another: constant torque, constant power, falling power.
 #include "machine/machine.h"
 
 namespace camber::feedmodel {

@@ -1,5 +1,5 @@
 #pragma once
-// Times and blocks of a planned program.
+// Summary of a planned program: times and numbers of blocks.
 #include "feedmodel/plan.h"
 #include "feedmodel/timed_path.h"
 

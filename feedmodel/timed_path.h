@@ -1,5 +1,5 @@
 #pragma once
-// The path in time: where the axes really are at every period of the control.
+// The path in time: commanded and actual positions of the axes at every period of the control.
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -15,7 +15,7 @@ namespace camber::feedmodel {
 
 struct TimedSample {
   double t_s = 0;
-  Vec3 command_mm = Vec3::Zero();         ///< what the interpolator commands
+  Vec3 command_mm = Vec3::Zero();         ///< position that the interpolator commands
   Vec3 position_mm = Vec3::Zero();        ///< predicted actual axes
   Vec3 velocity_mm_per_s = Vec3::Zero();  ///< predicted actual axes
   double feed_command_mm_per_s = 0;       ///< programmed feed of the commanded move (rapid: its top speed)
@@ -26,7 +26,7 @@ struct TimedSample {
 struct JointSample {
   Vec3 command_rad = Vec3::Zero();                                      ///< a, b, c
   Vec3 position_rad = Vec3::Zero(), velocity_rad_per_s = Vec3::Zero();  ///< predicted actual axes
-  ToolPose command_tool, tool;  ///< in the frame of the program's X Y Z: as commanded, and of the actual axes
+  ToolPose command_tool, tool;  ///< commanded and actual, in the frame of the program's X Y Z
   double feed_mm_per_s = 0;     ///< actual, of what F counts in the commanded move (FeedMeaning); degrees/s
 };
 
@@ -34,20 +34,20 @@ struct FeedSummary {
   double time_s = 0;
   double cutting_time_s = 0;  ///< commanded time in G1, G2, G3
   std::size_t blocks = 0;     ///< blocks with motion
-  /// In feed moves of a program with rotary motion: tip and axis against the poses that the control commands.
+  /// Contour error of tip and axis in feed moves of a program with rotary motion.
   std::optional<PoseContourFigures> contour{};
 };
 
 /// Called with runs of samples in time order; memory does not grow with the path's duration.
 using SampleSink = std::function<void(std::span<const TimedSample>)>;
 
-/// The same with the rotary axes: as many of the one as of the other.
+/// Receives samples with the rotary axes, as many of the one as of the other.
 using JointSampleSink = std::function<void(std::span<const TimedSample>, std::span<const JointSample>)>;
 
-/// Look-ahead plan along the whole path, then the axes. Deterministic. Does not throw on valid input.
+/// Plans the whole path, then follows it with the axes. Deterministic. Does not throw on valid input.
 FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machine& machine, const SampleSink& sink);
 
-/// The same for a program with rotary motion. Requires has_rotary_motion (joint_map.h).
+/// Does the same for a program with rotary motion. Requires has_rotary_motion (joint_map.h).
 FeedSummary predict_joints(const nc::Interpretation& program, const machine::Machine& machine,
                            const JointSampleSink& sink);
 

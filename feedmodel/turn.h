@@ -1,5 +1,5 @@
 #pragma once
-// Rotary axes along a segment of a program that turns them.
+// Rotary motion along one segment.
 #include "base/geometry.h"
 #include "kinematics/feed_meaning.h"
 
@@ -7,14 +7,14 @@ namespace camber::feedmodel {
 
 struct Segment;
 
-/// What a program names: X Y Z as Move has them (the tip in the part's frame under tool-centre-point control), and the
-/// angles of A, B, C.
+/// The coordinates that a program names: X Y Z as Move has them (the tip in the part's frame under tool-centre-point
+/// control), and the angles of A, B, C.
 struct ProgramPose {
   Vec3 xyz_mm = Vec3::Zero();
   Vec3 rotary_rad = Vec3::Zero();
 };
 
-/// At the length s along the segment, in mm of X Y Z, or degrees where only rotary axes move:
+/// Angles and places at the length s along the segment, in mm of X Y Z, or degrees where only rotary axes move:
 ///     angles = start + rate s + bend s^2,        X Y Z = Segment::point_at(s) + bend_mm s^2.
 /// `bend` and `bend_mm` are those of a rounded corner, else zero.
 struct Turn {

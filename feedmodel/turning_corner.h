@@ -1,5 +1,5 @@
 #pragma once
-// Corners between blocks of which at least one turns rotary axes, or moves joints that are not its X Y Z.
+// Corner laws between blocks of which at least one turns rotary axes or moves joints that are not its X Y Z.
 #include "feedmodel/joint_limits.h"
 #include "feedmodel/segment.h"
 
@@ -10,8 +10,9 @@ struct CornerRoom {
   double room = 0;          ///< most that may be cut off each side
 };
 
-/// What a rounding takes off each side. A parabola in X Y Z and in the angles alike that touches both sides d away from
-/// the corner passes it at d |u2 - u1| / 4, u1 and u2 the directions in X Y Z. Where they agree only the room counts.
+/// Length that a rounding takes off each side. A parabola in X Y Z and in the angles alike that touches both sides d
+/// away from the corner passes it at d |u2 - u1| / 4, u1 and u2 the directions in X Y Z. Where they agree only the room
+/// counts.
 double corner_trim(const Segment& from, const Segment& to, const CornerRoom& room);
 
 /// That parabola: begins at from_end_s on `from`, ends `trim` after the start of `to`. Its limits are those of `from`;

@@ -1,5 +1,5 @@
 #pragma once
-// Equations of Yan & Shirase 1997: feed efficiency e, k, and their lookahead.
+// Equations of Yan & Shirase 1997: feed efficiency e, the number k, and their lookahead, for comparison with the paper.
 #include <span>
 #include <vector>
 
@@ -21,12 +21,12 @@ struct BrakingBlock {
 };
 
 struct BackCorrection {
-  std::vector<double> exit_change_mm_per_s;  ///< of each block
-  std::vector<double> time_change_s;         ///< of each block's braking
+  std::vector<double> exit_change_mm_per_s;  ///< one per block
+  std::vector<double> time_change_s;         ///< change of each block's braking time
   double time_s() const;
 };
 
-/// What it costs when the last of the blocks must end slower by -change: the correction runs backward, linearised,
+/// Returns the cost where the last of the blocks must end slower by -change: the correction runs backward, linearised,
 /// df_(i-1) = df_i f_i / f_(i-1), the entry of the first block staying. Each block's braking time changes by
 /// (df_entry - df_exit) / a, so that the sum is -change / a whatever the blocks.
 /// Source: eqs. 12-14. The planner (lookahead.h) plans again exactly instead; this is their figure, to first order.

@@ -1,5 +1,5 @@
 #pragma once
-// Interpreter state and execution of one block. Internal to nc/; the interface is interpreter.h.
+// Executes one block on the state of the interpreter. Internal to nc/; the interface is interpreter.h.
 #include <array>
 #include <optional>
 #include <string>
@@ -21,7 +21,7 @@ enum class AxisPlace : std::uint8_t {
   known
 };
 
-/// What variables of the control tell.
+/// Values of the control's variables.
 struct MachineFacts {
   Vec3 position_mm = Vec3::Zero();
   double unit_mm = 1;
@@ -36,14 +36,14 @@ struct MachineFacts {
 
 /// A block to execute: position of its text, and its words.
 struct RunBlock {
-  const Program& program;       ///< its file
-  std::uint32_t block = 0;      ///< in that file
-  std::span<const Word> words;  ///< with numbers for values
+  const Program& program;       ///< file of the block
+  std::uint32_t block = 0;      ///< index in that file
+  std::span<const Word> words;  ///< words whose values are numbers
   std::uint32_t called_from;    ///< Move::block: the block itself, or of the main program the one that called the file
   bool editable = true;         ///< Move::editable
 };
 
-/// What a run makes one doubt of its options.
+/// Doubts about the options that a run raises.
 struct RunVerdict {
   /// Arcs fit with absolute centres only, none with relative ones only, and no word says which they are.
   bool centres_look_absolute = false;
@@ -65,7 +65,7 @@ class BlockInterpreter {
   std::optional<double> offset_value(const OffsetVariable& variable);
   /// The program sets it (#5221 = 10.). `offset`: in the text.
   void set_offset(const OffsetVariable& variable, double value, std::size_t offset);
-  /// What can be said only at the end.
+  /// Reports what can be said only at the end.
   void finish();
   RunVerdict verdict() const;
 
@@ -88,8 +88,8 @@ class BlockInterpreter {
     bool active = false;
     int g_tenths = 0;
     double radius_mm = 0;
-    std::size_t first_move = 0;  ///< in Interpretation::moves
-    std::size_t offset = 0;      ///< of the G41 or G42
+    std::size_t first_move = 0;  ///< index into Interpretation::moves
+    std::size_t offset = 0;      ///< position of the G41 or G42
   };
   struct Cycle {
     int g = 0;  ///< 0: none active
@@ -106,9 +106,9 @@ class BlockInterpreter {
     bool waits = false;
     bool chamfer = false;
     double size_mm = 0;    ///< radius; of a chamfer the distance from the corner
-    std::size_t move = 0;  ///< in Interpretation::moves
+    std::size_t move = 0;  ///< index into Interpretation::moves
     std::size_t offset = 0;
-    std::string text;  ///< of the word, for messages
+    std::string text;  ///< text of the word, for messages
   };
 
   // modal_state.cpp: words that change the state
@@ -128,7 +128,7 @@ class BlockInterpreter {
   void set_feed_mode(FeedMode mode);
   void set_contouring(const Code& code);
   void scale_whole_numbers();
-  /// What a number without a decimal point counts: factor on the word's value. 1: as it stands.
+  /// Factor on the value of a number without a decimal point. 1: as it stands.
   double whole_number_scale_of(const Word& word);
   double whole_number_unit(char letter, bool& is_angle) const;
   std::string whole_numbers_setting() const;
@@ -256,7 +256,7 @@ class BlockInterpreter {
 
   /// Words whose reading depends on the setting for numbers without a decimal point, where it is not known.
   struct WholeNumbers {
-    const Program* file = nullptr;  ///< of the first; none: there is none
+    const Program* file = nullptr;  ///< file of the first one; null: there is none
     std::size_t offset = 0;
     std::string text;
     double scale = 1;
@@ -302,12 +302,12 @@ class BlockInterpreter {
   Frames frames_;
   std::vector<std::pair<OffsetVariable, double>> pending_offsets_;  ///< LinuxCNC: count when they are next selected
   Frame frame_;
-  bool frames_used_ = false;  ///< something but unknown work offsets is in play
+  bool frames_used_ = false;  ///< something other than unknown work offsets is active
   bool not_editable_told_ = false;
   double polar_angle_deg_ = 0;
   std::optional<Vec3> reference_via_mm_;  ///< the intermediate point of G28, G30; for G29
   struct StoredReference {
-    Vec3 place_mm = Vec3::Zero(), rotary_rad = Vec3::Zero();  ///< in the frame of the moves
+    Vec3 place_mm = Vec3::Zero(), rotary_rad = Vec3::Zero();  ///< place and angles in the frame of the moves
   };
   std::array<std::optional<StoredReference>, 2> stored_reference_{};  ///< G28.1, G30.1
   std::map<int, ToolOffset> tool_offsets_;
@@ -320,17 +320,17 @@ class BlockInterpreter {
   Vec3 beside_mm_ = Vec3::Zero();
 
   Vec3 rotary_rad_ = Vec3::Zero();             ///< A, B, C
-  std::optional<RotaryTarget> rotary_target_;  ///< of the block, until it has a move
+  std::optional<RotaryTarget> rotary_target_;  ///< target of the block, until it has a move
 
   Vec3 position_mm_ = Vec3::Zero();
   std::array<AxisPlace, 3> place_{AxisPlace::never, AxisPlace::never, AxisPlace::never};
   std::uint8_t angles_unknown_ = 0;  ///< bit i: a direction (G43.5, G53.1) has moved A, B, C
-  const char* direction_code_ = "";  ///< which of them
+  const char* direction_code_ = "";  ///< the code that gave it
   bool tool_length_active_ = false;  ///< G43
   std::uint8_t clamped_ = 0;         ///< bit i: A, B, C
   std::uint8_t open_axes_ = 0;       ///< bit i: X, Y, Z; Move::open_axes, because of rotary axes
   bool aligned_ = false;             ///< G53.1 has put the tool along Z of the tilted frame
-  bool start_open_ = false;          ///< of the next move
+  bool start_open_ = false;          ///< whether the start of the next move is open
   std::string open_cause_{};         ///< the code that opened them, for messages
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The words of one block by their letters, and which of them something asked for.
+// Gives the words of one block by their letters, and keeps which of them were used.
 #include <array>
 #include <cassert>
 #include <cstdint>
@@ -32,7 +32,7 @@ class BlockWords {
     used_ |= bit(letter);
     return value_[index(letter)];
   }
-  /// As value(), times `scale`; nothing when the block has no such word.
+  /// Returns value() times `scale`; nothing when the block has no such word.
   std::optional<double> scaled(char letter, double scale) {
     if (!has(letter)) return std::nullopt;
     return value(letter) * scale;
@@ -55,9 +55,9 @@ class BlockWords {
 
   const std::vector<Code>& g() const { return g_; }
   const std::vector<Code>& m() const { return m_; }
-  /// Offset of the block's first word.
+  /// Position of the block's first word.
   std::size_t offset() const { return offset_; }
-  /// Offset of the word with the letter, or of the first word where there is none.
+  /// Position of the word with the letter, or of the first word where there is none.
   std::size_t offset_of(char letter) const { return has(letter) ? word(letter).offset : offset_; }
 
  private:

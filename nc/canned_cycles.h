@@ -1,5 +1,5 @@
 #pragma once
-// Drilling, tapping and boring cycles written out as moves.
+// Writes drilling, tapping and boring cycles out as moves.
 #include <cstddef>
 #include <vector>
 
@@ -15,7 +15,7 @@ struct CycleHole {
   Vec3 place_mm = Vec3::Zero();      ///< the two coordinates in the plane count
   double retract_mm = 0;             ///< R
   double bottom_mm = 0;              ///< Z
-  double clear_mm = 0;               ///< where the tool ends: the initial level (G98) or R (G99)
+  double clear_mm = 0;               ///< height at which the tool ends: the initial level (G98) or R (G99)
   double peck_mm = 0;                ///< Q of G73 and G83, or the first of pecks that become smaller; 0: in one go
   double peck_less_mm = 0;           ///< each peck is so much smaller than the one before it
   double least_peck_mm = 0;          ///< but no smaller than this

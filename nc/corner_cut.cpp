@@ -17,12 +17,13 @@ constexpr double kTangentRad = 1e-6;   ///< blocks that turn by less have no cor
 constexpr double kTooShortMm = 0.002;  ///< programs with three decimals make moves that are short by so much
 constexpr double kStillMm = 1e-9;
 
-/// One of the two moves at a corner, in the plane. Times run from the corner: 0 there, length() at the other end.
+/// A side of the corner: one of the two moves, in the plane. Times run from the corner: 0 there, length() at the other
+/// end.
 struct Side {
   PlaneCurve curve;
-  double sense = 1;  ///< of a circle: 1 counter-clockwise
+  double sense = 1;  ///< sense of a circle: 1 counter-clockwise
   double length = 0;
-  Vec2 direction = Vec2::Zero();  ///< of the motion at the corner, unit
+  Vec2 direction = Vec2::Zero();  ///< unit direction of the motion at the corner
 };
 
 /// A place on a side, and how much of the side lies between it and the corner.

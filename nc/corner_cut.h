@@ -1,5 +1,5 @@
 #pragma once
-// The corner between two moves in a plane, rounded or chamfered.
+// Rounds or chamfers the corner between two moves in a plane.
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@ namespace camber::nc {
 struct CornerCut {
   std::size_t before = 0, after = 0;  ///< in Interpretation::moves: those that meet there, lines or arcs in the plane
   Plane plane = Plane::xy;
-  std::string plane_name = "G17";  ///< for messages
+  std::string plane_name = "G17";  ///< name for messages
   bool chamfer = false;
   double size_mm = 0;  ///< radius; of a chamfer the distance from the corner
   std::string text;    ///< the words that ask for it, for messages

@@ -43,7 +43,7 @@ Vec3 BlockInterpreter::target_at_angle(const Vec3& start, Vec3 end) {
   return end;
 }
 
-/// What the words of the block ask for, once it has moved.
+/// Takes what the words of the block ask for, once it has moved.
 void BlockInterpreter::read_corner_words(std::size_t moves_before) {
   for (const Word* word : words_.corner_words()) {
     const std::string text = program_->source.text().substr(word->offset, word->length);

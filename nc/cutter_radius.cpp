@@ -14,7 +14,7 @@ namespace {
 constexpr double kSamePlaceMm = 1e-6;
 constexpr double kTangentRad = 1e-4;   ///< corners that turn by less are none
 constexpr double kTooShortMm = 0.002;  ///< programs with three decimals make lines that are short by so much
-constexpr double kSpiralMm = 0.05;     ///< as kArcRadiusErrorMm: radii that differ by more make a spiral
+constexpr double kSpiralMm = 0.05;     ///< radii that differ by more make a spiral, as with kArcRadiusErrorMm
 
 /// A programmed line or arc in the plane and its offset.
 struct Element {
@@ -27,7 +27,7 @@ struct Element {
   Vec2 offset_start, offset_end;            ///< beside start and end
   double start_radius = 0, end_radius = 0;  ///< arcs: of the offset
   double trim_start = 0, trim_end = 0;      ///< lengths that the corners take off (negative: add)
-  Vec2 path_start, path_end;                ///< of the offset, corners applied
+  Vec2 path_start, path_end;                ///< ends of the offset path, corners applied
 
   double radius() const { return 0.5 * (start_radius + end_radius); }
   double length() const { return arc ? radius() * sweep : (end - start).norm(); }
@@ -37,7 +37,7 @@ struct Piece {
   Vec2 end;
   bool arc = false;
   Vec2 centre = Vec2::Zero();
-  double sweep = 0;  ///< with its sign
+  double sweep = 0;  ///< signed sweep
 };
 
 class RadiusCompensation {

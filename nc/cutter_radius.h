@@ -29,7 +29,7 @@ struct CutterRadiusProblem {
 };
 
 struct CutterRadiusResult {
-  Vec3 end_mm = Vec3::Zero();                 ///< where the cutter's centre is at the end
+  Vec3 end_mm = Vec3::Zero();                 ///< centre of the cutter at the end
   std::vector<CutterRadiusProblem> problems;  ///< not empty: the moves are as they were
 };
 

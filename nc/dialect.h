@@ -25,7 +25,7 @@ enum class OffsetColumns : std::uint8_t { none, fanuc, haas, mazak };
 struct Dialect {
   LanguageId language = LanguageId::iso;
   std::string_view name;   ///< the word in files, options and messages
-  std::string_view title;  ///< as its maker writes it
+  std::string_view title;  ///< name as its maker writes it
 
   // Program text: constructs that identify the dialect, and how Camber writes a program
   bool shown_by_o_words = false;    ///< the only one with O-words (o100 sub) and named parameters (#<x>)
@@ -56,7 +56,7 @@ struct Dialect {
   double least_increment_mm = 0.001;
   double least_increment_inch = 0.0001;
   double least_increment_deg = 0.001;
-  /// What an F without a point counts where numbers are increments: per minute, per revolution (Fanuc 1403#0, 1405#1).
+  /// Unit of an F without a point where numbers are increments: per minute, per revolution (Fanuc 1403#0, 1405#1).
   double whole_feed_mm = 1, whole_feed_inch = 0.01;
   double whole_feed_per_turn_mm = 0.01, whole_feed_per_turn_inch = 0.0001;
 
@@ -65,7 +65,7 @@ struct Dialect {
   NumberRange common[2]{{100, 199}, {500, 999}};
   bool has_null = true;     ///< a variable never set is vacant (#0): X#1 is then as if it were not written; else 0
   bool system_4000 = true;  ///< #1000.. #5000.. as Fanuc numbers them; else LinuxCNC's #5061..#5428
-  OffsetColumns offset_columns = OffsetColumns::fanuc;  ///< which variables are tool offsets
+  OffsetColumns offset_columns = OffsetColumns::fanuc;  ///< layout of the variables that are tool offsets
 
   // Expressions
   bool logic_is_bitwise = true;      ///< 5 AND 2 is 0; else any number but 0 is true, and the result is 0 or 1
@@ -82,7 +82,7 @@ struct Dialect {
   bool g10_p0_is_external = true;       ///< G10 L2 P0 sets the shift common to all offsets; else the active one
   bool g10_l20_is_g54_1 = true;         ///< G10 L20 Pn sets G54.1 Pn; else it touches off
   bool rotation_r_adds_in_g91 = false;  ///< R of G68 in G91 is added to the angle (RIN = 1)
-  double scale_unit = 0.001;            ///< what 1 without a decimal point is in P, I, J, K of G51
+  double scale_unit = 0.001;            ///< value of 1 without a decimal point in P, I, J, K of G51
   bool g41_1_has_diameter = false;      ///< G41.1 D: a diameter; else it is normal direction control
   bool radius_corner_lines = true;      ///< outside corners by lines, else by arcs
   bool radius_entry_square = true;      ///< CutterRadius::entry_square_to_next (type A, 5003#0 = 0)
@@ -101,10 +101,10 @@ struct Dialect {
 
   // Subprograms
   bool m98_count_in_p = false;  ///< M98 P31234: O1234, three times
-  int max_levels = 15;          ///< of calls inside calls
+  int max_levels = 15;          ///< largest number of calls inside calls
 };
 
-/// All rows, in the order in which messages list them.
+/// Returns all rows, in the order in which messages list them.
 std::span<const Dialect> dialects();
 
 /// Assumed for a program whose text shows no dialect: Fanuc, in which most macros are written.

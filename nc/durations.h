@@ -1,5 +1,5 @@
 #pragma once
-// Programmed durations of moves.
+// Programmed durations of moves: by F alone, without the control's limits.
 #include "nc/move.h"
 #include "nc/program.h"
 #include "nc/reporter.h"

@@ -1,6 +1,6 @@
 #pragma once
-// Edits of a program: the user's text with new end points, feeds and splits of some moves, or with replaced stretches
-// of blocks, and otherwise unchanged. All folders that rewrite a program use this header; the implementation is in
+// Writes edits of a program: the user's text with new end points, feeds and splits of some moves, or with replaced
+// blocks, and otherwise unchanged. All folders that rewrite a program use this header; the implementation is in
 // nc/emit/.
 #include <cstdint>
 #include <limits>
@@ -24,7 +24,7 @@ struct ViaPoint {
   std::optional<double> feed_mm_per_s{};  ///< up to this point; not given: the move's (new or old)
 };
 
-/// What is to change about one move (a linear or an arc move that is editable and not canned; a rapid may get a new
+/// The changes of one move (a linear or an arc move that is editable and not canned; a rapid may get a new
 /// end). What is not given stays as it is.
 struct MoveEdit {
   std::uint32_t move = 0;       ///< index into Interpretation::moves; ascending in the list
@@ -35,7 +35,7 @@ struct MoveEdit {
 };
 
 struct EmitOptions {
-  int decimals_mm = 4;  ///< at least as many as the word had
+  int decimals_mm = 4;  ///< decimals of changed words, at least as many as the word had
   int decimals_inch = 5;
   std::string header_comment{};  ///< lines without brackets; empty: none. Go after % and the O word.
 };
@@ -93,14 +93,14 @@ std::string to_string(EmitGap why);
 
 struct Emission {
   std::string text;
-  std::vector<EditNotMade> not_made;  ///< ascending
+  std::vector<EditNotMade> not_made;  ///< edits that were not made, ascending
   /// One entry per line of `text`: index of the corresponding block of the given program; kNoBlock: new.
   std::vector<std::uint32_t> block_of_line;
 
   static constexpr std::uint32_t kNoBlock = std::numeric_limits<std::uint32_t>::max();
 };
 
-/// As emit(), and says which edits are not in the text.
+/// Does what emit() does, and says which edits are not in the text.
 Emission emit_edits(const Program& program, const Interpretation& interpretation, std::span<const MoveEdit> edits,
                     const EmitOptions& options);
 
@@ -112,7 +112,7 @@ void warn_of_uneditable(const Program& program, const Interpretation& interpreta
 /// Blocks first .. last (both included) become `lines`.
 struct BlockReplacement {
   std::uint32_t first = 0, last = 0;  ///< indexes into Program::blocks
-  std::vector<std::string> lines;     ///< without line ends; they get the one of block `first`
+  std::vector<std::string> lines;     ///< lines without line ends; they get the one of block `first`
 };
 
 /// The new text. `replacements`: ascending, not overlapping. A last line that the file leaves without a line end stays

@@ -21,7 +21,7 @@ enum class EventKind : std::uint8_t {
 /// together with it; one whose block has no move, or whose code acts at the block's end (M0 M1 M2 M5 M9 M30 M60),
 /// acts alone, before that move. `before_move` is Interpretation::moves.size() behind the last move.
 struct Event {
-  double value = 0;  ///< of the word, where the kind does not say otherwise: the code's number (M8: 8)
+  double value = 0;  ///< value of the word, where the kind does not say otherwise: the code's number (M8: 8)
   std::uint32_t block = 0;
   std::uint32_t before_move = 0;
   EventKind kind = EventKind::m_code;

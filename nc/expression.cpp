@@ -49,7 +49,7 @@ double to_bcd(double value, const ExpressionOp& op) {
 
 double rounded_to(double value, double step) { return step == 1 ? std::round(value) : std::round(value / step) * step; }
 
-/// One number in, one out.
+/// Applies a function of one number.
 double unary(const ExpressionOp& op, double a, const Dialect& dialect, double round_step) {
   switch (op.op) {
     case Op::negate:

@@ -43,7 +43,7 @@ enum class Op : std::uint8_t {
   tangent,
   arc_sine,
   arc_cosine,
-  arc_tangent,    ///< of one number, -90 to 90 degrees
+  arc_tangent,    ///< arc tangent of one number, -90 to 90 degrees
   arc_tangent_2,  ///< ATAN[y]/[x] and ATAN[y,x]
   square_root,
   absolute,
@@ -58,13 +58,13 @@ enum class Op : std::uint8_t {
 
 struct ExpressionOp {
   Op op = Op::number;
-  std::uint32_t offset = 0;  ///< in the file
+  std::uint32_t offset = 0;  ///< position in the file
   double operand = 0;
 };
 
 struct Expression {
-  std::uint32_t offset = 0;                            ///< in the file
-  std::uint32_t first = 0, count = 0;                  ///< in Expressions::ops, AND, OR and XOR last
+  std::uint32_t offset = 0;                            ///< position in the file
+  std::uint32_t first = 0, count = 0;                  ///< range in Expressions::ops, AND, OR and XOR last
   std::uint32_t product_first = 0, product_count = 0;  ///< the same with AND as a product (Dialect)
 };
 
@@ -72,7 +72,7 @@ struct Expression {
 struct Expressions {
   std::vector<ExpressionOp> ops;
   std::vector<Expression> list;
-  std::vector<std::string> names;  ///< of named parameters, lower case, without blanks
+  std::vector<std::string> names;  ///< names of parameters, lower case, without blanks
   /// Offset of the first abbreviated function, operator or statement (SI[30], GO10); none: not given.
   std::optional<std::uint32_t> abbreviation{};
   void note_abbreviation(std::size_t offset) {
@@ -80,7 +80,7 @@ struct Expressions {
   }
 };
 
-/// What is wrong with an expression or a statement, and where.
+/// An error in an expression or a statement, and its place.
 struct MacroError : std::runtime_error {
   MacroError(std::size_t offset_, std::string check_, const std::string& message)
       : std::runtime_error(message), offset(offset_), check(std::move(check_)) {}
@@ -135,7 +135,7 @@ class ExpressionReader {
   bool has_logic_ = false;
 };
 
-/// Where variables come from.
+/// Source of the values of variables.
 class VariableSource {
  public:
   virtual ~VariableSource() = default;

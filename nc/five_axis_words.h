@@ -1,5 +1,6 @@
 #pragma once
-// Words with which the dialects tilt the tool. Beside Dialect, as few files need them; the rows are in nc/dialects.h.
+// Words with which the dialects tilt the tool. Kept apart from Dialect, since few files need them; rows in
+// nc/dialects.h.
 #include <cstdint>
 #include <string_view>
 
@@ -7,7 +8,7 @@
 
 namespace camber::nc {
 
-/// How a whole operation at one direction of the tool (3+2) is written.
+/// Form in which an operation at one direction of the tool (3+2) is written.
 enum class OneDirection : std::uint8_t {
   tip,      ///< under tool-centre-point control
   tilted,   ///< in a tilted frame: G68.2, G53.1
@@ -26,7 +27,7 @@ struct FiveAxisWords {
   }
 };
 
-/// Of a dialect of dialects().
+/// Returns the words of a dialect of dialects().
 FiveAxisWords five_axis_words(const Dialect& dialect);
 
 }  // namespace camber::nc

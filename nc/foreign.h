@@ -1,5 +1,5 @@
 #pragma once
-// Words of letters that are no NC words: macro statements, subprograms and the languages of other controls.
+// Explains words of letters that are no NC words: macro statements, subprograms and the languages of other controls.
 #include <string>
 #include <string_view>
 
@@ -11,7 +11,7 @@ struct ForeignWord {
   bool other_language = false;  ///< the whole file is of another language: reading on makes no sense
 };
 
-/// What to say of a run of two or more letters, e.g. "SUPA", "GOTO", "XY"; `name` is in upper case.
+/// Returns what to say of two or more letters, e.g. "SUPA", "GOTO", "XY"; `name` is in upper case.
 ForeignWord explain_letters(std::string_view name);
 
 /// A letter or an address with `=` behind it, e.g. `T="MILL"`, `R1=5`.

@@ -1,5 +1,5 @@
 #pragma once
-// Where programmed coordinates lie: one affine map from the program's frame to the frame of the moves.
+// Frame: the affine map from programmed coordinates to the frame of the moves.
 #include <Eigen/Core>
 
 #include "base/geometry.h"
@@ -14,7 +14,7 @@ struct Frame {
   Vec3 shift_mm = Vec3::Zero();
   bool plain = true;              ///< the identity: nothing to do
   bool shift_only = true;         ///< linear is the identity
-  Vec3 origin_mm = Vec3::Zero();  ///< of the work offset, in the frame of the moves: what G254 turns
+  Vec3 origin_mm = Vec3::Zero();  ///< origin of the work offset, in the frame of the moves: what G254 turns
   bool polar = false;             ///< G16: X Y Z of the text are a radius and an angle, not these coordinates
 
   Vec3 from_program(const Vec3& p) const { return plain ? p : Vec3(linear * p + shift_mm); }

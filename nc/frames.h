@@ -16,15 +16,15 @@ struct Tilt {
   Vec3 origin_mm = Vec3::Zero();
 };
 
-/// What G52, G92, G68, G68.2, G51, G51.1 and the work offsets say together. A programmed point is mirrored, then
-/// scaled, then rotated (each about its own centre), then taken from the tilted frame to the work offset, shifted by
-/// G52 and G92, turned by the work offset's own rotation (G10 L2 R) and shifted by the work offset.
+/// The map that G52, G92, G68, G68.2, G51, G51.1 and the work offsets make together. A programmed point is mirrored,
+/// then scaled, then rotated (each about its own centre), then taken from the tilted frame to the work offset, shifted
+/// by G52 and G92, turned by the work offset's own rotation (G10 L2 R) and shifted by the work offset.
 struct Frames {
   explicit Frames(const std::map<int, Vec3>& work_offsets_mm) : offsets(work_offsets_mm) {}
 
   WorkOffsets offsets;
   Vec3 g52_mm = Vec3::Zero(), g92_mm = Vec3::Zero();
-  Vec3 g92_kept_mm = Vec3::Zero();  ///< what G92.3 brings back
+  Vec3 g92_kept_mm = Vec3::Zero();  ///< shift that G92.3 restores
   std::array<std::optional<double>, 3> mirror_at_mm{};
   Vec3 scale = Vec3::Ones(), scale_centre_mm = Vec3::Zero();
   double rotation_rad = 0;

@@ -133,8 +133,8 @@ MachineFacts BlockInterpreter::facts() const {
   return f;
 }
 
-/// What a number without a point counts as increments: a length, an angle or a time; 1 for letters that are no
-/// quantities in this block.
+/// Returns the unit of a number without a point that counts increments: of a length, an angle or a time; 1 for letters
+/// that are no quantities in this block.
 double BlockInterpreter::whole_number_unit(char letter, bool& is_angle) const {
   const Dialect& dialect = options_.dialect_or_default();
   constexpr double kTime_s = 0.001;
@@ -168,7 +168,8 @@ double BlockInterpreter::whole_number_unit(char letter, bool& is_angle) const {
   }
 }
 
-/// As above where the word is a number without a point and numbers are increments, else 1. Notes what depends on it.
+/// Returns that unit where the word is a number without a point and numbers are increments, else 1. Notes what depends
+/// on it.
 double BlockInterpreter::whole_number_scale_of(const Word& word) {
   const bool known = options_.whole_numbers_are_increments.has_value();
   const bool increments = options_.whole_numbers_are_increments.value_or(false);
@@ -250,7 +251,7 @@ void BlockInterpreter::warn_of_whole_numbers() {
                   w.read_with(1), whole_numbers_setting(), w.read_with(w.scale)));
 }
 
-/// Where no control is named, the settings of all.
+/// Returns the name of the control's setting; where no control is named, those of all.
 std::string BlockInterpreter::whole_numbers_setting() const {
   if (options_.dialect) return std::string(options_.dialect->whole_numbers_setting);
   std::string out;

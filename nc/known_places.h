@@ -1,5 +1,5 @@
 #pragma once
-// Which ends of a move lie at places that the program has said.
+// Tracks which ends of a move lie at places that the program has given.
 #include <array>
 #include <memory>
 
@@ -21,7 +21,7 @@ class KnownPlaces {
   KnownPlaces(const Program& text, const Interpretation& moves);
   ~KnownPlaces();
 
-  /// Of the next move; neither end of one to or from a reference point.
+  /// Returns which ends of the next move are known; neither end of a move to or from a reference point.
   Ends next(const Move& move);
 
  private:
@@ -30,7 +30,7 @@ class KnownPlaces {
   void learn_words(const Move& move);
 
   const Program& text_;
-  std::unique_ptr<TextRules> rules_;  ///< of languages other than ISO
+  std::unique_ptr<TextRules> rules_;  ///< only for languages other than ISO
   const Interpretation& moves_;
   std::array<bool, 3> known_{};
   int tool_ = -1;

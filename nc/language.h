@@ -21,18 +21,19 @@ class TextRules;
 class ProgramWriter;
 struct WriterFormat;
 
-/// What in a text only this language has.
+/// Evidence in a text that only this language has.
 struct LanguageEvidence {
-  std::size_t lines = 0;   ///< that show it, of the first ones of the text; 0: none
-  std::size_t offset = 0;  ///< of the first word that shows it
+  std::size_t lines = 0;   ///< number of lines that show it, among the first ones of the text; 0: none
+  std::size_t offset = 0;  ///< position of the first word that shows it
   std::string word{};      ///< that word, for messages: "BEGIN PGM", "CYCLE800"
 };
 
 struct Language {
   LanguageId id = LanguageId::iso;
-  std::string_view name;                           ///< in JSON; for all but ISO also the name of its dialect
-  std::string_view title;                          ///< "Heidenhain Klartext"
-  std::span<const std::string_view> extensions{};  ///< of files, lower case: they count where no word shows anything
+  std::string_view name;   ///< name in JSON; for all but ISO also the name of its dialect
+  std::string_view title;  ///< "Heidenhain Klartext"
+  std::span<const std::string_view>
+      extensions{};  ///< endings of files, lower case: they count where no word shows anything
 
   LanguageEvidence (*evidence)(std::string_view text) = nullptr;  ///< null: what is nothing else
   Program (*read)(SourceText source, Diagnostics& diagnostics) = nullptr;
@@ -43,7 +44,7 @@ struct Language {
   bool lines_have_numbers = false;  ///< in programs that are written anew
 };
 
-/// All of them; the first is ISO.
+/// Returns all languages; the first is ISO.
 std::span<const Language> languages();
 const Language& language_of(LanguageId id);
 inline const Language& language_of(const Program& program) { return language_of(program.language); }
@@ -55,13 +56,13 @@ struct RecognizedLanguage {
 };
 RecognizedLanguage recognize_language(const SourceText& source);
 
-/// As read_program(source, diagnostics), in a language that is known (--dialect); not given: the one that the text
-/// shows.
+/// Does what read_program(source, diagnostics) does, in a language that is known (--dialect); not given: the one that
+/// the text shows.
 Program read_program(SourceText source, std::optional<LanguageId> language, Diagnostics& diagnostics);
 
 /// Throws InputError [not-supported] for a program in another language than ISO, which `command` does not write.
 void require_iso(const Program& program, std::string_view command);
-/// Of the dialect in the options.
+/// Returns the language of the dialect in the options.
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options);
 
 }  // namespace camber::nc

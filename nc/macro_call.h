@@ -1,5 +1,5 @@
 #pragma once
-// Arguments of G65 and G66.
+// Arguments of macro calls (G65, G66): letters into local variables.
 #include <span>
 
 #include "nc/program.h"

@@ -1,5 +1,5 @@
 #pragma once
-// G and M codes: modal group, and messages for unsupported ones.
+// Table of G and M codes: the modal group of each, and messages for those that are not supported.
 #include <string_view>
 #include <vector>
 
@@ -28,13 +28,13 @@ enum class GGroup {
   macro,          ///< G65 G66 G67: the sequencer's
   no_effect,      ///< read, without effect on the path
   not_read,       ///< known, not supported
-  turning,        ///< of lathes and mill-turn machines
+  turning,        ///< codes of lathes and mill-turn machines
   unknown
 };
 
 struct GCode {
   GGroup group = GGroup::unknown;
-  std::string_view name{};  ///< for not_read and turning: what the code means
+  std::string_view name{};  ///< meaning of the code, for not_read and turning
   bool owns_words = false;  ///< not_read: its axis words are no move
 };
 
@@ -45,9 +45,9 @@ GCode g_code(int tenths);
 constexpr int haas_work_offset_of(int tenths) {
   return tenths >= 1100 && tenths <= 1290 && tenths % 10 == 0 ? tenths / 10 - 109 : 0;
 }
-/// All codes of the table, in tenths, ascending.
+/// Returns all codes of the table, in tenths, ascending.
 std::vector<int> known_g_codes();
-/// As docs/nc-language.md names it, e.g. "work offset".
+/// Returns the name of a group as docs/reference/nc-language.md has it, e.g. "work offset".
 std::string_view group_name(GGroup group);
 
 enum class MGroup {

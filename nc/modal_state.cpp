@@ -32,7 +32,7 @@ int strict_group(int tenths) {
   return is_exclusive(group) && group != GGroup::one_shot ? static_cast<int>(group) : -1;
 }
 
-/// Of M codes, likewise.
+/// Returns the modal group of an M code on a strict control.
 int strict_m_group(int tenths) {
   switch (m_code(tenths)) {
     case MGroup::stop:
@@ -130,7 +130,7 @@ void BlockInterpreter::check_strict_block() {
     error(off->word->offset, "modal-group", "G80 with axis words and no motion; G0, G1, G2 or G3 was expected");
 }
 
-/// Of a strict control.
+/// Checks the groups of M codes of a block on a strict control.
 void BlockInterpreter::check_m_groups() {
   if (!options_.dialect_or_default().strict) return;
   const auto& codes = words_.m();

@@ -1,6 +1,6 @@
 #pragma once
-// Moves of an interpreted program. Positions are the tool tip, mm, in the frame of the
-// work offset that was active at the first move (docs/nc-language.md, Frames).
+// Moves of an interpreted program, the result that all other folders use. Positions are the tool tip, mm, in the frame
+// of the work offset that was active at the first move (docs/reference/nc-language.md, Frames).
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -17,8 +17,8 @@
 namespace camber::nc {
 
 enum class MoveKind : std::uint8_t { rapid, linear, arc, dwell };
-/// Which code has switched on a control's mode for fine paths: G08 P1, G05 P10000, G05.1 Q1; CYCLE832 (Siemens), cycle
-/// 32 (Heidenhain), whose tolerance is blend_tolerance_mm.
+/// The code that has switched on a control's mode for fine paths: G08 P1, G05 P10000, G05.1 Q1; CYCLE832 (Siemens),
+/// cycle 32 (Heidenhain), whose tolerance is blend_tolerance_mm.
 enum class Contouring : std::uint8_t { none, g08_p1, g05_p10000, g05_1_q1, cycle832, cycle32 };
 
 enum class PathControl : std::uint8_t { exact_path, exact_stop, blend };  ///< G61, G61.1/G09, G64
@@ -27,12 +27,12 @@ enum class FeedMode : std::uint8_t { per_minute, inverse_time, per_revolution };
 
 /// Modal state during a move; shared by many moves.
 struct ModalState {
-  int tool = 0;  ///< in the spindle (after M6); of a tool that has a name: Interpretation::tool_names
+  int tool = 0;  ///< tool in the spindle (after M6); names are in Interpretation::tool_names
   double spindle_speed_rpm = 0;
   double programmed_spindle_speed_rpm = 0;  ///< S; more than spindle_speed_rpm where the machine clamps it
   SpindleDirection spindle = SpindleDirection::stopped;
   PathControl path_control = PathControl::blend;
-  double blend_tolerance_mm = -1;  ///< of the path: G64 P, cycle 32, CYCLE832; negative: the control's own
+  double blend_tolerance_mm = -1;  ///< tolerance of the path: G64 P, cycle 32, CYCLE832; negative: the control's own
   double merge_tolerance_mm = -1;  ///< G64 Q; negative: not given
   FeedMode feed_mode = FeedMode::per_minute;
   bool inch = false;
@@ -101,23 +101,23 @@ struct ProgramStock {
   bool cylinder = false;  ///< along Z, as wide as the box
   Vec3 min_mm = Vec3::Zero();
   Vec3 max_mm = Vec3::Zero();
-  std::uint32_t block = 0;  ///< that ends its description
+  std::uint32_t block = 0;  ///< block that ends its description
 };
 
 struct Interpretation {
-  std::vector<Move> moves;  ///< in order; each starts at the end of the previous one
+  std::vector<Move> moves;  ///< moves in order; each starts at the end of the previous one
   std::vector<Arc> arcs;
   std::vector<ModalState> states;
   std::vector<Event> events;                   ///< beside the moves, in order
   std::vector<Frame> frames{Frame{}};          ///< frames of the text's coordinates; the first is the identity
-  std::vector<MachineTarget> machine_targets;  ///< of the moves to machine coordinates, in order
-  std::vector<RotaryTarget> rotary;            ///< of the moves that turn rotary axes, in order; all axes start at 0
+  std::vector<MachineTarget> machine_targets;  ///< one per move to machine coordinates, in order
+  std::vector<RotaryTarget> rotary;            ///< one per move that turns rotary axes, in order; all axes start at 0
   /// Origin of the machine's coordinates in the frame of the moves, where the work offset is known.
   std::optional<Vec3> machine_origin_mm{};
   /// Moves on the ends of which others rely (an arc tangent to it, a polar coordinate), ascending: not editable, but
   /// where an edit before one has moved its start, its words may be changed so that it still ends there.
   std::vector<std::uint32_t> fixed_ends{};
-  std::map<int, std::string> tool_names{};  ///< of tools that the program calls by name, by their number in states
+  std::map<int, std::string> tool_names{};  ///< tools that the program calls by name, by their number in states
   std::optional<ProgramStock> stock{};
   bool whole_numbers_are_increments = false;  ///< how the program's numbers without a decimal point were read
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which move of the given program a move of the emitted one stands for.
+// Move map: which move of the given program a move of the emitted one stands for.
 #include <cstdint>
 #include <span>
 #include <vector>

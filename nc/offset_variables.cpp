@@ -43,7 +43,7 @@ std::span<const Column> columns_of(OffsetColumns columns) {
   return {};
 }
 
-/// Of work offsets whose variables begin behind `first`; `number_of(0)` is the first of them.
+/// Looks up work offsets whose variables begin behind `first`; `number_of(0)` is the first of them.
 template <class NumberOf>
 std::optional<OffsetVariable> work_offset(int number, int first, int count, int axes, NumberOf number_of) {
   const int index = (number - first - 1) / kPerOffset, axis = (number - first - 1) % kPerOffset;

@@ -10,8 +10,8 @@ namespace camber::nc {
 struct OffsetVariable {
   enum class Kind : std::uint8_t { work, external, tool_length, tool_length_wear, tool_radius, tool_radius_wear };
   Kind kind = Kind::work;
-  int number = 0;  ///< of the work offset as in ModalState::work_offset; of the tool offset, H or D
-  int axis = 0;    ///< of a work offset: X Y Z A B C, or kRotation (LinuxCNC), degrees
+  int number = 0;  ///< number of the work offset (as ModalState::work_offset) or of the tool offset (H or D)
+  int axis = 0;    ///< axis of a work offset: X Y Z A B C, or kRotation (LinuxCNC), degrees
   static constexpr int kRotation = 9;
 };
 

@@ -11,7 +11,7 @@ namespace camber::nc {
 /// G54, G59.1, G54.1P7, G154P7, G112 (Haas: G154 P3) as ModalState::work_offset has them; nothing for other names.
 std::optional<int> work_offset_number(std::string_view name);
 
-/// One of G54 .. G59.3, G54.1 Pn. Numbers as in ModalState::work_offset.
+/// A work offset: G54 .. G59.3, G54.1 Pn. Numbers as in ModalState::work_offset.
 struct WorkOffset {
   Vec3 value_mm = Vec3::Zero();    ///< machine coordinates of its origin
   double rotation_rad = 0;         ///< about Z (G10 L2 R of LinuxCNC)
@@ -20,7 +20,7 @@ struct WorkOffset {
   bool read = false;               ///< the program has read it while it was not known: what it sets is relative to that
 };
 
-/// One line of the tool offset memory, by its H or D number.
+/// A line of the tool offset memory, by its H or D number.
 struct ToolOffset {
   std::optional<double> length_mm{}, length_wear_mm{};
   std::optional<double> radius_mm{}, radius_wear_mm{};

@@ -132,7 +132,7 @@ class Glance {
 constexpr std::array<double, 20> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
                                                  1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
 
-/// One pass over the text. Each block is read on its own; a block with an error keeps the words before it.
+/// Reads the text in one pass. Each block is read on its own; a block with an error keeps the words before it.
 class Scanner {
  public:
   Scanner(Program& program, Reporter& report, Reporter& behind_end)
@@ -163,8 +163,8 @@ class Scanner {
   }
 
  private:
-  /// Bytes before the line with the first %, where that begins the program: a control reads nothing before it. Where a
-  /// program ends before the %, or none stands behind it, the % is the end.
+  /// Returns the bytes before the line with the first %, where that begins the program: a control reads nothing before
+  /// it. Where a program ends before the %, or none stands behind it, the % is the end.
   std::size_t leader_length() const {
     const auto first_of_line = [&](std::size_t at) {
       while (at > 0 && text_[at - 1] != program_.source.line_end())
@@ -257,7 +257,7 @@ class Scanner {
     return end - first_word;
   }
 
-  /// At a `;`: the end of a block, where words follow; else a comment begins.
+  /// Handles a `;`: the end of a block, where words follow; else a comment begins.
   bool scan_divider(std::size_t block_begin) {
     const bool first = text().substr(block_begin, at_ - block_begin).find_first_not_of(" \t") == std::string_view::npos;
     if (first || !Glance(text(), at_ + 1, end_).reads_as_block()) return false;
@@ -377,7 +377,7 @@ class Scanner {
     return scan_word_as(letter, at_);
   }
 
-  /// At an O with a text behind it: the name of the program, in place of its number or behind it (OFinal path).
+  /// Handles an O with a text behind it: the name of the program, in place of its number or behind it (OFinal path).
   bool is_program_name() const {
     const std::string_view before = text().substr(block_begin_, at_ - block_begin_);
     if (before.find_first_not_of(" \t%") != std::string_view::npos) return false;

@@ -1,5 +1,6 @@
 #pragma once
-// An NC program as text: blocks and words with their positions in the file, without interpretation.
+// An NC program as text: blocks and words with their positions in the file, without interpretation, so that it can be
+// written again byte for byte.
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -17,10 +18,10 @@ namespace camber::nc {
 /// One word, e.g. `X-12.5`. Offsets count bytes from the start of the file.
 struct Word {
   char letter = 0;            ///< upper case; of a word with a comma (,R ,C ,A) lower case
-  std::uint8_t value_at = 0;  ///< of the number's first character, from `offset`
+  std::uint8_t value_at = 0;  ///< position of the number's first character, from `offset`
   std::uint16_t length = 0;   ///< letter, blanks inside and number
-  std::uint32_t offset = 0;   ///< of the letter
-  double value = 0;           ///< as written, in the program's unit; NaN: an expression (MacroTables::words)
+  std::uint32_t offset = 0;   ///< position of the letter
+  double value = 0;           ///< number as written, in the program's unit; NaN: an expression (MacroTables::words)
 };
 
 static_assert(sizeof(Word) == 16, "large programs have a hundred million of them");
@@ -30,8 +31,8 @@ constexpr bool is_corner_word(const Word& word) { return word.letter >= 'a'; }
 
 /// One line of the file. Comments, % and empty lines are blocks without words.
 struct Block {
-  std::uint32_t offset = 0;  ///< of the line's first byte
-  std::uint32_t length = 0;  ///< without the line end
+  std::uint32_t offset = 0;  ///< position of the line's first byte
+  std::uint32_t length = 0;  ///< length without the line end
   std::uint32_t first_word = 0;
   std::uint16_t word_count = 0;
   std::uint8_t skip = 0;  ///< begins with / or /1: 1; with /2 .. /9: 2 .. 9
@@ -44,11 +45,11 @@ struct Block {
 struct BlockPart {
   std::uint32_t block = 0;
   std::uint32_t offset = 0;      ///< behind the `;`
-  std::uint32_t first_word = 0;  ///< in Program::words, behind those of the block itself
+  std::uint32_t first_word = 0;  ///< index into Program::words, behind those of the block itself
   std::uint32_t word_count = 0;
 };
 
-/// What a language other than ISO makes of a text beside its words.
+/// The tree that a language other than ISO makes of a text, beside its words.
 struct LanguageTree {
   virtual ~LanguageTree() = default;
 };
@@ -56,22 +57,22 @@ struct LanguageTree {
 struct Program {
   LanguageId language = LanguageId::iso;
   std::string language_reason{};               ///< why the text is read in it
-  std::shared_ptr<const LanguageTree> tree{};  ///< of languages other than ISO
+  std::shared_ptr<const LanguageTree> tree{};  ///< only for languages other than ISO
   SourceText source;
   std::vector<Block> blocks;  ///< blocks[i] is line i + 1 of the file
   std::vector<Word> words;
   MacroTables macro;
   std::vector<BlockPart> parts;     ///< ascending
   std::uint32_t leader_blocks = 0;  ///< lines before the first %, which are no part of the program
-  /// Offset of the first comment within a comment, (a (b) c), which some dialects refuse.
+  /// Position of the first comment within a comment, (a (b) c), which some dialects refuse.
   std::uint32_t nested_comment = kNowhere;
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
-  /// Those before the first `;` of a divided block.
+  /// Words before the first `;` of a divided block.
   std::span<const Word> words_of(std::size_t block) const {
     return {words.data() + blocks[block].first_word, blocks[block].word_count};
   }
-  /// Of the first word of a block, or of the block where it has none.
+  /// Returns the position of the first word of a block, or of the block where it has none.
   std::size_t offset_of(std::size_t block) const {
     return blocks[block].word_count > 0 ? words[blocks[block].first_word].offset : blocks[block].offset;
   }

@@ -15,7 +15,7 @@ namespace camber::nc {
 struct BlockPlace {
   const Program* file = nullptr;
   std::uint32_t block = 0;
-  std::uint32_t part = 0;  ///< of a divided block: 0 before the first `;`
+  std::uint32_t part = 0;  ///< part of a divided block: 0 before the first `;`
 };
 
 /// Reads subprogram files when they are first asked for: O1234, O1234.nc, 1234.nc, name.ngc and the like, in the main
@@ -34,7 +34,7 @@ class ProgramFiles {
   std::optional<std::uint32_t> find_block(BlockPlace from, double number);
   /// Blocks of the file that begin a program (O1234), ascending.
   const std::vector<std::uint32_t>& program_starts(const Program& file);
-  /// How often each block of the file was run; counts stop at 255.
+  /// Number of times each block of the file was run; counts stop at 255.
   std::vector<std::uint8_t>& runs(const Program& file);
   /// Counts begin anew: the program is interpreted once more.
   void forget_runs();
@@ -47,7 +47,7 @@ class ProgramFiles {
   const Program& main_;
   Diagnostics& diagnostics_;
   std::unordered_map<const Program*, std::unique_ptr<Index>> indexes_;
-  std::map<std::string, std::unique_ptr<Program>> files_;  ///< by their first candidate name; nullptr: there is none
+  std::map<std::string, std::unique_ptr<Program>> files_;  ///< files by their first candidate name; null: there is none
 };
 
 /// The number of the program that begins in a block, if any: its first word but N is an O.

@@ -93,7 +93,7 @@ std::optional<double> BlockInterpreter::radius_of(const Code& code) {
   return 0.0;
 }
 
-/// What a block must not do while the path is being computed.
+/// Checks what a block must not do while the path is being computed.
 void BlockInterpreter::check_radius_block() {
   if (radius_.radius_mm == 0) return;
   const char* what = nullptr;

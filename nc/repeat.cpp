@@ -51,8 +51,8 @@ double highest_of(const Interpretation& moves, const CutRun& run) {
   return z;
 }
 
-/// From the highest end of the rapids before the run, the last one at that height, and on by their ends; nothing where
-/// none of them lies above the run.
+/// Finds the way from the highest end of the rapids before the run, the last one at that height, and on by their ends;
+/// nothing where none of them lies above the run.
 void find_way_back(const Interpretation& moves, CutRun& run) {
   const auto& all = moves.moves;
   const bool per_minute = moves.state_of(all[run.last_move]).feed_mode == FeedMode::per_minute;
@@ -144,7 +144,8 @@ class WayBackWriter {
     const int decimals = std::max(least, coordinate_decimals_of(program_));
     return gap() + letter + format_number(inch() ? mm / kMmPerInch : mm, decimals, style_);
   }
-  /// Where the run's first cutting move relies on the modal feed, and another one is modal behind the run.
+  /// Returns the modal feed to restore, where the run's first cutting move relies on it and another feed is modal
+  /// behind the run; else 0.
   double feed_to_restore() const {
     const auto& all = moves_.moves;
     if (moves_.state_of(all[run_.first_move]).feed_mode != FeedMode::per_minute) return 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Runs of cutting moves that a program can make more than once, and the program that does.
+// Second cuts: finds runs of cutting moves that a program can repeat, and writes the program that repeats some.
 #include <cstdint>
 #include <span>
 #include <string>
@@ -25,17 +25,17 @@ enum class RunGap : std::uint8_t {
   modal       ///< cut again, it is another motion: a modal code within it lasts beyond it
 };
 
-/// For messages: "are ...".
+/// Text for messages: "are ...".
 std::string to_string(RunGap why);
 
 /// Cutting moves (and dwells) between two rapids.
 struct CutRun {
-  std::uint32_t first_move = 0, last_move = 0;    ///< of Interpretation::moves, both included
-  std::uint32_t first_block = 0, last_block = 0;  ///< of Program::blocks, both included
+  std::uint32_t first_move = 0, last_move = 0;    ///< indices into Interpretation::moves, both included
+  std::uint32_t first_block = 0, last_block = 0;  ///< indices into Program::blocks, both included
   /// Ends of the rapids that lead from the end of the run to its start: up to the greatest height of the rapids beside
   /// the run, across to the place from which the program itself goes down, and down by its own rapids.
   std::vector<Vec3> way_back{};
-  double way_back_mm = 0;  ///< its length
+  double way_back_mm = 0;  ///< length of the way back
   bool closed = false;     ///< ends where it begins: is cut again without a way back
   RunGap why_not = RunGap::none;
 };
@@ -47,15 +47,16 @@ std::vector<CutRun> cut_runs(const Program& program, const Interpretation& moves
 /// A program in which some runs are cut more than once.
 struct RepeatedText {
   std::string text;
-  /// Of the given program; of a line of an earlier cut the block that it repeats; Emission::kNoBlock: the way between.
+  /// Block of the given program for each line; for a line of an earlier cut the block that it repeats;
+  /// Emission::kNoBlock: the way between.
   std::vector<std::uint32_t> block_of_line;
   std::vector<bool> added;  ///< one per line: not of the given program
 };
 
-/// What is cut before a run: lines that begin and end where the run does, but for an allowance.
+/// A cut before a run: lines that begin and end where the run does, but for an allowance.
 struct EarlierCut {
   CutRun run;
-  std::vector<std::string> lines{};             ///< without line ends; block numbers (N words) are left out
+  std::vector<std::string> lines{};             ///< lines without line ends and block numbers (N words)
   std::vector<std::uint32_t> block_of_lines{};  ///< one per line
 };
 

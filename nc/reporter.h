@@ -1,5 +1,5 @@
 #pragma once
-// Diagnostics of one NC program: each reported once, with a count, in the order of the file.
+// Collects diagnostics of one NC program: each is reported once, with a count, in the order of the file.
 #include <cstddef>
 #include <map>
 #include <string>
@@ -16,14 +16,14 @@ class Reporter {
  public:
   Reporter(const SourceText& source, Diagnostics& diagnostics) : source_(&source), diagnostics_(diagnostics) {}
 
-  /// What is said from now on is about this file. It must outlive finish().
+  /// Sets the file that later diagnostics are about. It must outlive finish().
   void set_source(const SourceText& source) { source_ = &source; }
 
   /// `alike`: what counts as the same complaint; empty: the message itself.
   void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
   void warning(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});
 
-  /// Nothing was said so far.
+  /// Forgets everything that was reported.
   void forget();
   /// True when as many different errors were met as a reader may give: time to stop.
   bool full() const { return errors_ + diagnostics_.errors() >= Diagnostics::kMaxErrors; }

@@ -13,7 +13,7 @@ enum class TipControl : std::uint8_t {
   directions  ///< G43.5: I J K are the tool's direction in the part's frame
 };
 
-/// What X Y Z refer to without tool-centre-point control.
+/// Reference of X Y Z without tool-centre-point control.
 enum class WorkFrame : std::uint8_t {
   machine,  ///< the linear axes: the frame does not follow the rotary axes
   tilted,   ///< G68.2: a frame fixed to the part, with the tool along its Z (G53.1)
@@ -29,7 +29,7 @@ struct RotaryOption {
   int unclamp_m = 0;          ///< and the one that releases it
 };
 
-/// Where the rotary axes are at the end of a move. Moves without an entry leave them where they are. A table of its
+/// Positions of the rotary axes at the end of a move. Moves without an entry leave them where they are. A table of its
 /// own, so that moves of three-axis programs need no memory for it.
 struct RotaryTarget {
   Vec3 end = Vec3::Zero();    ///< A, B, C, rad, with their winding; or the tool's direction (unit) in the part's frame

@@ -123,7 +123,7 @@ void BlockInterpreter::read_tool_length(const Code& code) {
 
 // --- words
 
-/// What keeps rotary words from being read in this block; empty: nothing.
+/// Returns what keeps rotary words from being read in this block; empty: nothing.
 std::string BlockInterpreter::refuses_rotary() const {
   if (request_.dwell && !options_.dialect_or_default().dwell_takes_p_alone) return "G4";
   if (request_.frame_code.word) return code_text(request_.frame_code);
@@ -212,7 +212,7 @@ void BlockInterpreter::read_tool_direction() {
   rotary_target_ = target;
 }
 
-/// What a message says of a code that turns rotary axes, on a machine without them.
+/// Returns the message for a code that turns rotary axes on a machine without them.
 std::string BlockInterpreter::needs_kinematics(const Code& code, const char* name) const {
   return fmt::format("{} ({}) is read on a machine with [kinematics], by camber {}", code_text(code), name,
                      kReadersOfRotaryAxes);

@@ -1,5 +1,5 @@
 #pragma once
-// What words of rotary axes have in common in all languages.
+// Handling of rotary words that all languages share.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

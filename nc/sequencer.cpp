@@ -132,7 +132,7 @@ bool Sequencer::divides_lines(const Program& file) const {
 
 bool Sequencer::is_divided(const Block& block) const { return block.divided && dialect_.semicolon_ends_block; }
 
-/// Of a divided block, the parts behind the first `;`.
+/// Returns the parts of a divided block behind the first `;`.
 std::span<const BlockPart> Sequencer::parts_of(std::uint32_t block) const {
   const auto& parts = at_.file->parts;
   const auto first = std::ranges::lower_bound(parts, block, {}, &BlockPart::block);
@@ -146,7 +146,7 @@ std::span<const Word> Sequencer::words_here() const {
   return {at_.file->words.data() + part.first_word, part.word_count};
 }
 
-/// To the next block, which may be in the same line.
+/// Advances to the next block, which may be in the same line.
 void Sequencer::advance() {
   const Block& block = at_.file->blocks[at_.block];
   if (is_divided(block) && at_.part < parts_of(at_.block).size()) {
@@ -313,7 +313,7 @@ void Sequencer::run_loop(std::uint32_t index) {
   advance();
 }
 
-/// At the end of a loop, and at continue.
+/// Handles the end of a loop, and continue.
 void Sequencer::next_turn(std::uint32_t head) {
   const Statement& s = statement(head);
   const Statement& last = statement(s.partner);

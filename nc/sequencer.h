@@ -1,5 +1,6 @@
 #pragma once
-// Which block runs next: calls, jumps, loops. BlockInterpreter runs the block once its words have numbers.
+// Sequencer: decides which block runs next (calls, jumps, loops). BlockInterpreter runs the block once its words have
+// numbers.
 #include <map>
 #include <optional>
 #include <vector>
@@ -26,7 +27,7 @@ class Sequencer {
     BlockPlace start;
     std::size_t times = 1;
     std::optional<LocalVariables> locals{};  ///< a level of its own; else it shares the caller's
-    std::uint32_t offset = 0;                ///< of the word that calls
+    std::uint32_t offset = 0;                ///< position of the word that calls
   };
   struct Frame {
     Call call;
@@ -34,7 +35,7 @@ class Sequencer {
     BlockPlace caller;
     std::uint32_t called_from = 0;  ///< Move::block
     bool o_word = false;
-    std::map<std::uint32_t, double> turns_left;  ///< of o repeat
+    std::map<std::uint32_t, double> turns_left;  ///< turns left of o repeat
   };
   using LoopKey = std::pair<const Program*, std::uint32_t>;
 
@@ -98,11 +99,11 @@ class Sequencer {
   BlockPlace at_;
   bool running_ = true, failed_ = false;
   std::vector<Frame> frames_;
-  std::map<std::uint32_t, double> turns_left_;       ///< of the main program
+  std::map<std::uint32_t, double> turns_left_;       ///< turns left in the main program
   std::vector<std::optional<Call>> modal_calls_{1};  ///< G66, of each level of macros
-  std::vector<Word> words_;                          ///< of the block, with numbers for values
+  std::vector<Word> words_;                          ///< words of the block, with numbers for values
   bool editable_ = true;
-  std::vector<std::uint8_t>* runs_ = nullptr;  ///< of the file at_ is in
+  std::vector<std::uint8_t>* runs_ = nullptr;  ///< counts of the file that at_ is in
   std::size_t repeated_ = 0;                   ///< blocks run again, and the moves that they made
   std::map<LoopKey, std::size_t> entered_;     ///< repeated_ when the loop was entered
 };

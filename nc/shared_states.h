@@ -1,5 +1,5 @@
 #pragma once
-// Modal states that moves share (Interpretation::states).
+// Shares modal states among moves (Interpretation::states).
 #include <cstdint>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace camber::nc {
 
-/// Index of the state among the last ones of the list, where it is added if none of them is the same.
+/// Returns the index of the state among the last ones of the list, where it is added if none of them is the same.
 inline std::uint32_t shared_state(std::vector<ModalState>& states, const ModalState& state) {
   const std::size_t count = states.size(), oldest = count > 8 ? count - 8 : 0;
   for (std::size_t i = count; i-- > oldest;)

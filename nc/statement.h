@@ -39,11 +39,11 @@ struct Statement {
   bool repeats = false;  ///< loop: o repeat
   std::uint32_t block = 0, offset = 0;
   std::uint32_t label = kNoLabel;  ///< index into MacroTables::labels; of an assignment into Expressions::names
-  std::uint32_t first_value = 0, value_count = 0;  ///< in MacroTables::values
+  std::uint32_t first_value = 0, value_count = 0;  ///< range in MacroTables::values
   /// The other end: of a loop its last statement and the reverse; of if, elseif, else the endif; of sub its endsub; of
   /// break and continue the loop.
   std::uint32_t partner = kNone;
-  std::uint32_t next_branch = kNone;  ///< of if and elseif: the next elseif, else or endif
+  std::uint32_t next_branch = kNone;  ///< for if and elseif: the next elseif, else or endif
 };
 
 /// A word whose value is an expression. Its Word::value is NaN.
@@ -52,13 +52,13 @@ struct ExpressionWord {
   std::uint32_t expression = 0;  ///< index into Expressions::list
 };
 
-/// What a plain program has none of. Everything is in the order of the file.
+/// Tables of a program with macros; a plain program has none. Everything is in the order of the file.
 struct MacroTables {
   Expressions expressions;
   std::vector<ExpressionWord> words;
   std::vector<Statement> statements;
-  std::vector<std::uint32_t> values;  ///< of statements: indexes into Expressions::list
-  std::vector<std::string> labels;    ///< of O-words and DO loops: "100", "name", "DO 1"
+  std::vector<std::uint32_t> values;  ///< values of statements: indices into Expressions::list
+  std::vector<std::string> labels;    ///< labels of O-words and DO loops: "100", "name", "DO 1"
   bool calls = false;                 ///< the program has M97, M98, M99, G65 or G66
   bool local_calls = false;           ///< M97
   bool broken = false;                ///< something of it could not be read: loops and calls are not to be run
@@ -76,11 +76,11 @@ class StatementReader {
     statement,
     ignored  ///< DPRNT and the like, and a program's name: the rest of the block, or the name, has no effect
   };
-  /// At a letter: IF, WHILE, DO, END, GOTO, ELSE, ENDIF, DPRNT ...
+  /// Reads at a letter: IF, WHILE, DO, END, GOTO, ELSE, ENDIF, DPRNT ...
   Found read_keyword();
-  /// At an O: o100 sub, o<name> call [1] ...; nothing where O and a number stand alone.
+  /// Reads at an O: o100 sub, o<name> call [1] ...; nothing where O and a number stand alone.
   Found read_o_word();
-  /// At a #.
+  /// Reads an assignment at a #.
   void read_assignment();
 
  private:

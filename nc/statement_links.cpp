@@ -69,7 +69,7 @@ class Linker {
     return Statement::kNone;
   }
 
-  /// What is still open inside is not closed any more.
+  /// Leaves what is still open inside: nothing closes it any more.
   void leave_inner(std::uint32_t opener) {
     while (!open_.empty() && open_.back() != opener) {
       const std::uint32_t inner = open_.back();

@@ -76,7 +76,7 @@ Value SystemVariables::fanuc(int number, std::size_t offset) {
                    fmt::format("there is no variable #{} on a {} control that Camber knows", number, dialect_.name));
 }
 
-/// Nothing where the variable is no offset.
+/// Returns nothing where the variable is no offset.
 std::optional<Value> SystemVariables::offset_value(int number, std::size_t offset) {
   const auto variable = offset_variable(dialect_, number);
   if (!variable) return std::nullopt;

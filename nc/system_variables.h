@@ -1,5 +1,5 @@
 #pragma once
-// Variables of the control: positions, modal codes, clocks, alarms.
+// Values of the control's variables: positions, modal codes, clocks, alarms.
 #include <string>
 
 #include "nc/block_interpreter.h"

@@ -18,7 +18,7 @@ constexpr char kAngleLetters[] = "IJK";
 
 bool BlockInterpreter::rotary_axes_turned() const { return angles_unknown_ != 0 || rotary_rad_ != Vec3::Zero(); }
 
-/// From here on the programmed coordinates of the tool do not follow from the program until words give them.
+/// Marks that from here on the programmed coordinates of the tool do not follow from the program until words give them.
 void BlockInterpreter::open_axes(std::string cause) {
   open_axes_ = 7;
   start_open_ = true;

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers for tools that a program calls by name.
+// Gives numbers to tools that a program calls by name.
 #include <map>
 #include <set>
 #include <string>
@@ -22,7 +22,7 @@ class ToolNumbers {
     return at->second = number;
   }
 
-  /// Interpretation::tool_names.
+  /// Returns the names for Interpretation::tool_names.
   const std::map<int, std::string>& names() const { return names_; }
 
  private:

@@ -12,7 +12,7 @@ namespace camber::nc {
 
 class SystemVariables;
 
-/// One level of local variables.
+/// A level of local variables.
 struct LocalVariables {
   static constexpr std::size_t kCount = 34;
   std::array<Value, kCount> numbered{};  ///< #1 .. #33

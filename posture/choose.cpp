@@ -20,10 +20,10 @@ namespace camber::posture {
 namespace {
 
 constexpr double kKnot_mm = 3;                ///< between the points at which the path through directions is looked for
-constexpr double kFarthest = 55 * kPi / 180;  ///< of tool and normal that is looked at
-constexpr double kFarthestLate = 75 * kPi / 180;  ///< the same where the axes follow late: turns cost more
+constexpr double kFarthest = 55 * kPi / 180;  ///< largest angle of tool and normal that is tried
+constexpr double kFarthestLate = 75 * kPi / 180;  ///< the same where the axes follow late, since turns cost more
 constexpr double kRapidMmPerS = 200;
-constexpr double kSpeedCost = 0.5;  ///< of a tip that cuts, a mm of path
+constexpr double kSpeedCost = 0.5;  ///< cost of a tip that cuts, per mm of path
 constexpr int kRounds = 12, kSmoothings = 15, kSwingRounds = 6;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
@@ -38,7 +38,7 @@ bool clear_between(const Surroundings& surroundings, const ToolShape& tool, cons
   return surroundings.room_mm(tool, (p.tip_mm(a) + q.tip_mm(b)) / 2, axis, 0) >= 0;
 }
 
-/// With the rotary axes turning evenly.
+/// Returns whether the tool is clear on the way between two points, with the rotary axes turning evenly.
 bool clear_on_the_way(const Surroundings& surroundings, const ToolShape& tool, const kinematics::Chain& chain,
                       const Vec3& from_mm, const Vec3& to_mm, const Vec3& from_rad, const Vec3& to_rad) {
   return each_between(chain, from_rad, to_rad, [&](double share, const Vec3& axis) {
@@ -48,8 +48,8 @@ bool clear_on_the_way(const Surroundings& surroundings, const ToolShape& tool, c
 
 /// The points at which the direction is chosen: a few millimetres apart, and where contact begins and ends.
 struct Knots {
-  std::vector<std::size_t> of;    ///< of all points
-  std::vector<PathPoint> points;  ///< with the way and time from the one before
+  std::vector<std::size_t> of;    ///< indices among all points
+  std::vector<PathPoint> points;  ///< points with way and time from the one before
 };
 
 Knots knots_of(std::span<const PathPoint> points) {
@@ -135,8 +135,8 @@ class Chooser {
         for (std::size_t k = 0; k < directions_.angles(d).size(); ++k)
           out[d][k] = lag_.place(points_[i], directions_.axis(d), directions_.angles(d)[k]);
   }
-  /// What the axes leave on the surface on the way from one direction to another, at the programmed feed: that turns
-  /// slow the axes down is no merit.
+  /// Returns the error that the axes leave on the surface on the way from one direction to another, at the programmed
+  /// feed: that turns slow the axes down is no merit.
   float lag_cost(const PathPoint& p, const Directions::Step& step, std::size_t from, const Places& before,
                  const Places& here) const {
     const double error = LagError::error_mm(before[from][step.from_branch], here[step.to][step.to_branch], p.time_s);
@@ -223,7 +223,7 @@ class Chooser {
     }
   }
 
-  /// Where nothing else is clear.
+  /// Lifts the restriction, where nothing else is clear.
   void stop_restricting() {
     std::fill(restricted_.begin(), restricted_.end(), std::uint8_t{0});
     restricts_ = may_restrict_ = false;
@@ -301,7 +301,7 @@ class Chooser {
   const Directions& directions_;
   const ClearDirections& clear_;
   std::size_t tool_index_;
-  const std::vector<std::size_t>& knots_;  ///< of all_
+  const std::vector<std::size_t>& knots_;  ///< indices into all_
   const std::vector<PathPoint>& points_;   ///< the knots
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> barred_;
   std::size_t first_barred_ = 0;

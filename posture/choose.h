@@ -1,5 +1,5 @@
 #pragma once
-// The direction of the tool at every point of a path.
+// Chooses the direction of the tool at every point of a path, at least cost and clear of everything.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,12 +24,12 @@ enum class Mode : std::uint8_t {
 struct PostureOptions {
   Mode mode = Mode::chosen;
   bool indexed = false;                            ///< one direction for all points; mode is not looked at
-  bool stock = true;                               ///< is an obstacle, but for the flutes
-  double clearance_mm = 1;                         ///< of all that is not cutter
+  bool stock = true;                               ///< the stock is an obstacle, except for the flutes
+  double clearance_mm = 1;                         ///< distance that everything but the cutter keeps
   double lead_rad = 10 * kPi / 180, tilt_rad = 0;  ///< lead_tilt
-  double max_tilt_rad = 75 * kPi / 180;            ///< from +Z of the program
-  double least_angle_rad = 10 * kPi / 180;         ///< of tool and normal: nearer the tip cuts, which has no speed
-  double grid_rad = 7.5 * kPi / 180;               ///< of the directions that `chosen` looks at
+  double max_tilt_rad = 75 * kPi / 180;            ///< largest angle from +Z of the program
+  double least_angle_rad = 10 * kPi / 180;         ///< smallest angle of tool and normal: below it the tip cuts
+  double grid_rad = 7.5 * kPi / 180;               ///< distance of the directions that `chosen` tries
   double degree_cost_mm = 0.02;                    ///< a degree of rotary motion is worth so many mm of path with the
                                                    ///< error of a tool at a right angle to the normal
 };
@@ -43,11 +43,11 @@ double angle_between(const Vec3& a, const Vec3& b);
 inline constexpr double kAlong = 0.3;
 double error_share(double angle_rad);
 
-/// The same of what the axes leave on the surface (lag_error.h). Its square: a turn leaves as much however it is spread
-/// along the path, and is to be spread.
+/// Returns the share of the error that the axes leave on the surface (lag_error.h), squared: a turn leaves as much
+/// however it is spread along the path, and the square spreads it.
 double lag_share(double error_mm, const ToolShape& tool);
 
-/// What the choice of this direction costs, a mm of path: share of the error, and a tip that cuts.
+/// Returns the cost of a direction per mm of path: share of the error, and a tip that cuts.
 double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options);
 
 struct Postures {
@@ -55,8 +55,8 @@ struct Postures {
   std::optional<std::size_t> blocked{};  ///< the first point at which no direction is clear, or none is reached
 };
 
-/// For each tool: one tool, or the same one drawn in further and further. Where a tool has an error_mm, what its axes
-/// leave on the surface (`lag`) counts as that much of the share of the error.
+/// Returns one choice per tool; `tools`: one tool, or the same one at decreasing overhangs. Where a tool has an
+/// error_mm, the error that its axes leave on the surface (`lag`) is divided by it and counts as a share of the error.
 std::vector<Postures> choose_postures(std::span<const PathPoint> points, const Surroundings& surroundings,
                                       std::span<const ToolShape> tools, const machine::Machine& machine,
                                       const LagError& lag, const PostureOptions& options);

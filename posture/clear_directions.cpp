@@ -43,7 +43,7 @@ struct Range {
   std::size_t first = 0, end = 0;
   bool alike = true;  ///< the tools have the same pieces
   ToolShape whole, core;
-  std::size_t halves = 0;  ///< of the list, side by side
+  std::size_t halves = 0;  ///< index of the first of the two halves, which are neighbours in the list
 
   std::uint32_t bits() const { return (end == 32 ? ~0U : (1U << end) - 1U) & ~((1U << first) - 1U); }
 };
@@ -73,13 +73,14 @@ void add_ranges(std::span<const ToolShape> tools, std::size_t index, std::size_t
   add_ranges(tools, now.halves + 1, middle, end, out);
 }
 
-/// One direction along the path.
+/// Checks one direction along the path.
 class Along {
  public:
   Along(const Surroundings& surroundings, const std::vector<Range>& ranges, const Vec3& axis)
       : surroundings_(surroundings), ranges_(ranges), axis_(axis) {}
 
-  /// Where the direction stays, the tool only moves: room at one point is room at the next ones.
+  /// Returns the lengths that are clear at a point. With a constant direction the tool only moves, so that the room at
+  /// one point bounds the room at the next ones.
   std::uint32_t at(const PathPoint& point) {
     const Range& all = ranges_.front();
     const Vec3 tip = point.tip_mm(axis_);
@@ -96,7 +97,7 @@ class Along {
     if (now.alike && surroundings_.room_mm(now.whole, tip, axis_, 0) >= 0) return now.bits();
     return blocked(range, tip);
   }
-  /// Where not all lengths of the range together are clear.
+  /// Returns the clear lengths of a range of which not all are clear together.
   std::uint32_t blocked(std::size_t range, const Vec3& tip) const {
     const Range& now = ranges_[range];
     if (now.end - now.first == 1) return 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Which directions are clear at which points, for a tool at several lengths at once.
+// Finds which directions are clear at which points, for a tool at several lengths at once.
 #include <cstdint>
 #include <span>
 #include <vector>

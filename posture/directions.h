@@ -1,5 +1,5 @@
 #pragma once
-// Directions of a tool that a machine reaches, and what it costs its rotary axes to go from one to the next.
+// Directions of the tool that a machine reaches within travel, and the rotary motion and time from one to the next.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -15,8 +15,8 @@ class Directions {
   struct Step {
     std::uint16_t to = 0;
     float turn_deg = 0;  ///< sum of the turns of the rotary axes
-    float time_s = 0;    ///< that the slowest of them takes at its speed, or with its acceleration from rest to rest
-    std::uint8_t from_branch = 0, to_branch = 0;  ///< of angles()
+    float time_s = 0;    ///< time of the slowest axis, at its speed or from rest to rest with its acceleration
+    std::uint8_t from_branch = 0, to_branch = 0;  ///< solutions, as in angles()
   };
 
   /// Directions about `step_rad` apart, up to `max_tilt_rad` from +Z, that the rotary axes of the machine reach within
@@ -25,11 +25,11 @@ class Directions {
 
   std::size_t size() const { return axes_.size(); }
   const Vec3& axis(std::size_t i) const { return axes_[i]; }
-  /// Of A, B and C, one or two solutions.
+  /// Returns one or two solutions for A, B and C, rad.
   std::span<const Vec3> angles(std::size_t i) const { return {angles_[i].rad.data(), angles_[i].count}; }
   /// Every solution of the inverse kinematics is within travel.
   bool whole(std::size_t i) const { return angles_[i].whole; }
-  /// Of direction i, itself included.
+  /// Returns the steps from direction i, the one to itself included.
   std::span<const Step> steps(std::size_t i) const { return {steps_.data() + first_[i], first_[i + 1] - first_[i]}; }
 
  private:

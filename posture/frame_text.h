@@ -1,5 +1,5 @@
 #pragma once
-// The frame in which an operation at one direction of the tool is written.
+// Writes the frame of an operation at one direction of the tool: G68.2, G254 or joints.
 #include "kinematics/chain.h"
 #include "nc/emit/number_style.h"
 #include "nc/five_axis_words.h"
@@ -9,7 +9,7 @@ namespace camber::posture {
 
 struct WrittenFrame {
   repath::PostFrame frame;
-  Vec3 axis = Vec3::UnitZ();  ///< of the words as they are written
+  Vec3 axis = Vec3::UnitZ();  ///< axis that follows from the words as they are written
 };
 
 /// G68.2 and G53.1, or G254 (tilted, dynamic), for this direction, the rotary axes back at 0 behind it.

@@ -30,7 +30,7 @@ LagError::LagError(const machine::Machine& machine, const Vec3& origin_mm, doubl
   for (const char letter : chain_.rotary_axes()) any_ = any_ || std::abs(rotary_tau_s_[letter - 'a'] - first) > kSameS;
 }
 
-/// Of the rounding: the tip of a tool that is shorter by its height.
+/// Returns the centre of the rounding: the tip of a tool that is shorter by its height.
 Vec3 LagError::centre_mm(const kinematics::Joints& joints) const {
   return chain_.pose(joints, tool_length_mm_ - pivot_mm_).tip_mm;
 }

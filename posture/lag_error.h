@@ -1,5 +1,6 @@
 #pragma once
-// What the following errors of the axes leave on the surface: each axis is behind its command by its own time.
+// Lag error: the error that the following errors of the axes leave on the surface. Each axis is behind its command by
+// its own time.
 //
 // An axis i at the speed q'_i is behind by  tau_i q'_i,  tau = filter / 2 + T1 + T2 + (1 - Kf) / Kp  (feedmodel/drive.h
 // at constant speed). The centre of the cutter's rounding, c(q) in the part's frame, is off by  J (tau o q'),  J =
@@ -18,7 +19,7 @@ namespace camber::posture {
 
 class LagError {
  public:
-  /// Of a tool of this length (gauge line to tip), whose cutter is rounded about a point `pivot_mm` above the tip;
+  /// For a tool of this length (gauge line to tip), whose cutter is rounded about a point `pivot_mm` above the tip;
   /// `origin_mm`: machine zero in the frame of the points.
   LagError(const machine::Machine& machine, const Vec3& origin_mm, double tool_length_mm, double pivot_mm);
 

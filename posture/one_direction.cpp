@@ -15,7 +15,7 @@ namespace {
 constexpr double kCap_mm = 2;        ///< room beyond this is not measured
 constexpr double kSteps = 1.5;       ///< the directions are so many times nearer to each other than along a path
 constexpr std::size_t kAtOnce = 32;  ///< directions
-constexpr double kFarthestIndexed = kPi / 2;  ///< of tool and normal
+constexpr double kFarthestIndexed = kPi / 2;  ///< largest angle of tool and normal
 
 double cost_of(std::span<const PathPoint> points, const Vec3& axis, const ToolShape& tool, const LagError& lag,
                const kinematics::Chain& chain, const PostureOptions& options) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a path costs with its directions chosen: on the machine, axis by axis.
+// Evaluates a path whose directions are chosen, axis by axis of the machine.
 #include <span>
 #include <vector>
 
@@ -11,17 +11,17 @@ namespace camber::posture {
 /// The way from the point before.
 struct AxisStep {
   bool swings = false;      ///< rotary_path.h
-  double turn_deg = 0;      ///< of all rotary axes
-  double time_s = 0;        ///< at the programmed feed, longer where a rotary axis is too slow
+  double turn_deg = 0;      ///< turn of all rotary axes
+  double time_s = 0;        ///< time at the programmed feed, longer where a rotary axis is too slow
   double lag_error_mm = 0;  ///< LagError; 0 off the part
 };
 
-/// One for each point; rotary axes as rotary_path() has them.
+/// Returns one step per point; the rotary axes follow rotary_path().
 std::vector<AxisStep> axis_steps(std::span<const PathPoint> points, std::span<const Vec3> axes, const LagError& lag,
                                  const machine::Machine& machine);
 
-/// The same cost that the choice is made by, of whole directions: posture_cost(), lag_share(), rotary motion and time;
-/// and kSwingCost_mm for every swing.
+/// Returns the cost by which directions are chosen, for a whole path: posture_cost(), lag_share(), rotary motion and
+/// time; and kSwingCost_mm for every swing.
 inline constexpr double kSwingCost_mm = 1000;
 double path_cost(std::span<const PathPoint> points, std::span<const Vec3> axes, const ToolShape& tool,
                  const LagError& lag, const machine::Machine& machine, const PostureOptions& options);

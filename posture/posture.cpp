@@ -106,14 +106,16 @@ class Maker {
   }
   void write(Postured& out) const;
 
-  /// Of the spindle's gauge line to the tip, in the first cut; not known: that of the holder and the overhang.
+  /// Returns the distance from the spindle's gauge line to the tip in the first cut; if it is not known, the length of
+  /// holder and overhang.
   double tool_length_mm() const {
     double length = tool().overhang_mm;
     for (const machine::HolderPart& part : tool().holder) length += part.length_mm;
     return moves_.state_of(moves_.moves[first_]).tool_length_mm.value_or(length);
   }
 
-  /// Of an edge that takes a chip as thick as the feed per tooth of the first cut and kOrdinaryChip_mm wide.
+  /// Returns the force of an edge whose chip is as thick as the feed per tooth of the first cut and kOrdinaryChip_mm
+  /// wide.
   double ordinary_force_N(const machine::Tool& tool) const {
     for (std::size_t i = first_; i < end_; ++i) {
       const nc::Move& m = moves_.moves[i];

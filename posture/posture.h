@@ -1,9 +1,27 @@
 #pragma once
-// From a three-axis finishing program to five axes: a direction of the tool at every point of its path.
+// From a three-axis finishing program to five axes: chooses a direction of the tool at every point of its path. This is
+// the door of posture/.
+//
+// Overview
 //
 // All moves of one ball or bull-nose tool come under tool-centre-point control. Where the cutter touches the part, the
 // tool is tilted about the centre of its rounding, so that the contact stays; elsewhere about the same point. The text
 // is that of the given program with other coordinates, rotary words, and further blocks (repath/post_writer.h).
+//
+// 1. path_points      samples the path: centre of the rounding, normal of the part, way and time.
+// 2. directions       lists the directions that the machine reaches within travel, and the cost of going from one to
+//                     the next.
+// 3. surroundings     gives the room between the tool and part, fixtures and stock, exact for convex pieces and
+//                     triangles; stock_obstacle makes the stock an obstacle. clear_directions finds, for each point,
+//                     the directions in which a tool of several lengths is clear.
+// 4. choose           finds the cheapest path through (point, direction): error share of the deflection (error_share),
+//                     lag of the axes (lag_error), rotary motion and time. one_direction does it for 3+2 axes.
+// 5. rotary_path      chooses solution and winding of the inverse kinematics over the whole path.
+// 6. path_cost        evaluates the result with the machine's axes; posture.cpp writes the program, checks it between
+//                     points, bars what is not clear, and starts again at 4.
+//
+// Frames: points and directions are in the frame of the program's X Y Z with all rotary axes at 0; tool shapes are in
+// the tool's frame, origin at the tip. docs/posture.md has the cost, the checks and the figures.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,7 +44,7 @@ struct PostureRequest {
   std::vector<double> overhangs_mm{};  ///< ever less; empty: that of the job
   double step_mm = 1;                  ///< between the points at which the direction is chosen
   PostureOptions options;
-  /// How one direction is written (options.indexed): tip, tilted or dynamic; joints as the tip, for post().
+  /// Form in which one direction is written (options.indexed): tip, tilted or dynamic; joints as the tip, for post().
   nc::OneDirection written = nc::OneDirection::tip;
 };
 
@@ -35,11 +53,11 @@ struct PostureFigures {
   std::size_t unclear = 0;  ///< unclear_points()
   double overhang_mm = 0;
   double rotary_motion_deg = 0;
-  double mean_angle_rad = 0, max_angle_rad = 0;  ///< of tool and normal, weighted by the way
+  double mean_angle_rad = 0, max_angle_rad = 0;  ///< angle of tool and normal, weighted by the way
   /// Deflection normal to the part per newton, mean over the way: lateral compliance at the tip times error_share().
   double compliance_um_per_N = 0;
-  /// What the axes leave on the surface by following late, mean magnitude over the way at the feed that the rotary axes
-  /// allow (lag_error.h).
+  /// Error that the following errors of the axes leave on the surface: mean magnitude over the way, at the feed that
+  /// the rotary axes allow (lag_error.h).
   double lag_um = 0;
   /// Expected form error, mean magnitude over the way: compliance_um_per_N times the force of an edge at the feed per
   /// tooth of the first cut (posture.cpp, kOrdinaryChip_mm), and lag_um.
@@ -50,9 +68,9 @@ struct Postured {
   std::string text;  ///< empty: blocked
   std::vector<std::uint32_t> block_of_line;
   PostureFigures figures;
-  PostureFigures upright;  ///< of the tool of the job along Z; unclear and rotary motion are not counted
+  PostureFigures upright;  ///< figures of the job's tool along Z, without `unclear` and rotary motion
   int tool = 0;
-  Vec3 origin_mm = Vec3::Zero();                ///< of the work offset, in the machine frame
+  Vec3 origin_mm = Vec3::Zero();                ///< origin of the work offset, in the machine frame
   std::optional<std::uint32_t> blocked_move{};  ///< the first move at which no direction is clear
   std::optional<std::uint32_t> unclear_move{};  ///< the first one of figures.unclear
   std::vector<PathPoint> points;
@@ -68,7 +86,7 @@ struct Postured {
 ///  [not-editable]   a move of the tool that the text does not say alone;
 ///  [no-moves]       the tool has no moves;
 ///  [no-frame]       the machine cannot write one direction as asked for.
-/// One result for each overhang; none where there are errors.
+/// Returns one result for each overhang; none where there are errors.
 std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& diagnostics);
 
 /// The least overhang that is tried: flutes, and one diameter.

@@ -12,10 +12,10 @@ namespace camber::posture {
 namespace {
 
 constexpr double kBetween_deg = 1;
-constexpr double kSwingCost = 1000;      ///< of a degree of swing in feed moves, degrees of turn
-constexpr double kLowCost_per_mm = 0.1;  ///< the same in rapids, for each mm below the highest point
+constexpr double kSwingCost = 1000;      ///< cost of a degree of swing in feed moves, in degrees of turn
+constexpr double kLowCost_per_mm = 0.1;  ///< the same in rapids, per mm below the highest point
 constexpr double kSame_rad = 1e-7;
-constexpr std::size_t kMostStates = 12;  ///< at one point: the cheapest
+constexpr std::size_t kMostStates = 12;  ///< states kept at a point, the cheapest ones
 
 struct State {
   Vec3 rotary_rad = Vec3::Zero();

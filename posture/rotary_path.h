@@ -1,6 +1,6 @@
 #pragma once
-// Where the rotary axes are along a path whose directions are chosen: one solution of the inverse kinematics with its
-// winding for each point, looked for over the whole path at once.
+// Chooses, for a path whose directions are given, one solution of the inverse kinematics and its winding at each point,
+// over the whole path at once.
 #include <functional>
 #include <optional>
 #include <span>
@@ -28,8 +28,8 @@ inline constexpr double kSwing_mm = 0.1;
 bool swings(const kinematics::Chain& chain, std::span<const PathPoint> points, std::span<const Vec3> axes,
             std::span<const Vec3> rotary_rad, std::size_t i);
 
-/// Of A to C, a value for each point: within travel, of least swing in feed moves and then of least turn, from 0 on.
-/// The axes change their solution in rapids, as high as may be, where there is any such way.
+/// Returns A, B and C, rad, one value per point: within travel, of least swing in feed moves and then of least turn,
+/// from 0 on. The axes change their solution in rapids, as high as may be, where there is any such way.
 std::vector<Vec3> rotary_path(const machine::Machine& machine, std::span<const PathPoint> points,
                               std::span<const Vec3> axes);
 

@@ -13,9 +13,9 @@
 namespace camber::posture {
 namespace {
 
-constexpr double kFieldVoxel_mm = 0.25, kVoxelsAcross = 20;  ///< of the smallest tool
+constexpr double kFieldVoxel_mm = 0.25, kVoxelsAcross = 20;  ///< voxels across the smallest tool
 constexpr double kBandVoxels = 3;
-constexpr int kFaces = 48;  ///< of a cylinder
+constexpr int kFaces = 48;  ///< faces of a cylinder
 constexpr std::size_t kMaxFaces = 400000;
 
 using Triangle = std::array<Vec3, 3>;

@@ -1,5 +1,5 @@
 #pragma once
-// The stock as a tool that is to be tilted finds it.
+// Makes the stock an obstacle, as the tool that is to be tilted finds it.
 #include <cstddef>
 
 #include "base/diagnostics.h"

@@ -32,7 +32,7 @@ class Facet : public ConvexSolid {
   const std::array<Vec3, 3>& corners_;
 };
 
-/// Whether a triangle, in the tool's frame, is nearer to the piece than it needs to be.
+/// Returns whether a triangle, in the tool's frame, is nearer to the piece than it needs to be.
 bool too_near(const ToolShape::Piece& piece, const std::array<Vec3, 3>& corners) {
   const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
   const double out = centre.head<2>().norm(), across = out > 0 ? std::min(out, piece.radius_mm) / out : 0;
@@ -189,7 +189,7 @@ struct Surroundings::Probe {
   const ToolShape& tool;
   const Vec3& tip_mm;
   const Vec3& axis;
-  bool stock;      ///< which the flutes cut
+  bool stock;      ///< the obstacle is stock, which the flutes may cut
   double room_mm;  ///< never negative
 
   bool counts(const ToolShape::Piece& piece) const {
@@ -199,8 +199,8 @@ struct Surroundings::Probe {
   /// A volume as the tool sees it.
   struct Seen {
     double out, up;       ///< the centre, from the axis and up from the tip
-    double tilt, wide;    ///< of the axis: along the slab's normal, and across it
-    double below, above;  ///< from the tip to the slab's sides, along its normal
+    double tilt, wide;    ///< components of the axis along the slab's normal and across it
+    double below, above;  ///< distances from the tip to the slab's sides, along its normal
   };
   Seen seen(const Volume& volume) const {
     const Vec3 from_tip = volume.centre_mm - tip_mm;
@@ -212,7 +212,7 @@ struct Surroundings::Probe {
             volume.low_mm - tip,
             volume.high_mm - tip};
   }
-  /// By how much the volume is at least farther from the piece than needed, by ball and cylinder, then by the slab;
+  /// Returns a lower bound of the room between the volume and the piece, by ball and cylinder, then by the slab;
   /// kFar_mm: by no less than the room.
   double bound_mm(const Seen& seen, double radius_mm, const ToolShape::Piece& piece) const {
     const double across = std::max(seen.out - piece.radius_mm, 0.0);

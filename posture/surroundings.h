@@ -1,5 +1,5 @@
 #pragma once
-// The room that a tool has beside part, fixtures and stock, exactly.
+// Surroundings of the tool: gives the exact room between the tool and part, fixtures and stock.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -12,16 +12,17 @@
 
 namespace camber::posture {
 
-/// What of a tool must stay clear: turned convex pieces in the tool's frame, origin at the tip, z along the axis.
+/// The parts of a tool that must stay clear: turned convex pieces in the tool's frame, origin at the tip, z along the
+/// axis.
 struct ToolShape {
   struct Piece {
     simulate::TurnedSolid solid;
     double need_mm = 0;                               ///< least distance to the surroundings
-    double radius_mm = 0, bottom_mm = 0, top_mm = 0;  ///< of a cylinder about it
+    double radius_mm = 0, bottom_mm = 0, top_mm = 0;  ///< cylinder about the piece
   };
   std::vector<Piece> pieces;
   double pivot_mm = 0;  ///< height above the tip about which the tool is tilted
-  double error_mm = 0;  ///< what an ordinary force bends the tip by; 0: errors of the axes do not count (choose.h)
+  double error_mm = 0;  ///< deflection of the tip by an ordinary force; 0: axis errors do not count (choose.h)
 
   void add(simulate::TurnedSolid solid, double need_mm);
 };
@@ -31,20 +32,20 @@ struct ToolShape {
 inline constexpr double kCutterSlack_mm = 0.02;
 ToolShape tool_shape(const machine::Tool& tool, const machine::Machine& machine, double clearance_mm);
 
-/// What an obstacle is for the flutes: they cut stock, and must not cut the rest.
+/// Kind of an obstacle: the flutes may cut stock, and must not cut the rest.
 enum class Obstacle : std::uint8_t { solid, stock };
 
 /// Triangles in trees of spheres.
 class Surroundings {
  public:
-  /// In the frame of the program.
+  /// Adds an obstacle, in the frame of the program.
   void add(const TriangleMesh& mesh, const Vec3& shift_mm = Vec3::Zero(), Obstacle what = Obstacle::solid);
   void add(std::span<const std::array<Vec3, 3>> triangles, Obstacle what);
   void add_box(const Vec3& min_mm, const Vec3& max_mm, Obstacle what = Obstacle::solid);
   /// After the last add(), before anything else.
   void finish();
 
-  /// By how much the nearest piece is farther than it needs to be, `cap_mm` where it is more; negative: too near, by no
+  /// Returns how much farther the nearest piece is than it needs to be, at most `cap_mm`; negative: too near, by no
   /// matter how much. Never more than the truth; less by up to the size of a triangle where it is not negative, which
   /// is exact to 1e-4 mm or a thousandth of the distance. Quickest with a cap of 0.
   double room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const;
@@ -66,12 +67,12 @@ class Surroundings {
     double low_mm = 0, high_mm = 0;  ///< along the normal
   };
   struct Node : Volume {
-    std::uint32_t begin = 0, end = 0;  ///< of a leaf's triangles; inner: end is 0, children at begin and begin + 1
+    std::uint32_t begin = 0, end = 0;  ///< triangles of a leaf; inner node: end is 0, children at begin and begin + 1
   };
   struct Tree {
     std::vector<std::array<Vec3, 3>> triangles;
     std::vector<Node> nodes;
-    std::vector<Volume> volumes;  ///< of the triangles
+    std::vector<Volume> volumes;  ///< spheres of the triangles
     bool stock = false;
 
     void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
@@ -82,7 +83,7 @@ class Surroundings {
   static Volume volume_of(std::span<const std::array<Vec3, 3>> triangles);
   Tree& tree_of(Obstacle what) { return trees_[static_cast<std::size_t>(what)]; }
 
-  std::array<Tree, 2> trees_;  ///< by Obstacle
+  std::array<Tree, 2> trees_;  ///< one per Obstacle
 };
 
 }  // namespace camber::posture

@@ -1,6 +1,27 @@
 #pragma once
-// Tool engagement: the chip at every point of the cutter envelope at every stamp, read from the stock left by the
-// previous stamps; and carving of the stock.
+// Tool engagement: finds the chip at every point of the cutter's envelope at every stamp, from the stock that the
+// previous stamps left, and carves the stock. This is the door of removal/engage/.
+//
+// Overview
+//
+// A stamp is the cutter at one tooth passing (removal/tool_path.h). The cutter's surface, the envelope, is sampled by
+// points on rings, one rotation step apart (removal/cutter.h). For every stamp an engager answers one question per
+// point: how thick is the material below it, measured against the envelope's normal, and how much of that did the tool
+// move into since the last tooth? The smaller of the two is the uncut chip thickness. Forces follow from the chips in
+// deflection/; after that the engager removes the cutter's volume from the stock.
+//
+// - RigidEngager: the cutter is not deflected. Stamps are processed in batches: the chips of all stamps of a batch are
+//   read from the unchanged tiles, then the batch is cut. engage/upright/block_reader reads eight points at a time.
+//   With a SparseChipSink only some stamps are read; the caller interpolates the rest.
+// - DeflectedEngager: the cutter is deflected, and its deflection depends on the chips. It takes one stamp at a time:
+//   read() with the current deflection, as often as that changes, then cut(). engage/upright/chip_reader reads patches
+//   of the envelope and also returns how each depth changes with the deflection.
+// - StepEngager: for a path that is made while it is cut (removal/step_engagement.h).
+// - sweep(): carves without reading chips, for blanks, targets and checks.
+//
+// Upright paths use engage/upright/ and field/upright/; every other path uses engage/tilted/ and field/tilted/, which
+// work in the tool's frame of each stamp. Where a cut changes slowly, a glance (engage/glance.h) at an eighth of the
+// envelope shows whether a stamp has to be read at all.
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -81,7 +102,7 @@ class EnvelopeBlocks {
 
   struct Block {
     int ring = 0;  ///< the lower one
-    int step = 0;  ///< of the pitch, the first
+    int step = 0;  ///< first rotation step, counted in the pitch
   };
   const Block& block(std::uint32_t i) const { return block_[i]; }
   std::size_t size() const { return block_.size(); }
@@ -104,7 +125,7 @@ class EnvelopeBlocks {
            double voxel_mm, double band_mm);
 
   std::vector<Block> block_;
-  std::vector<float> lowest_;  ///< of the points of each block and all after it
+  std::vector<float> lowest_;  ///< lowest point of each block and of all blocks after it
   std::vector<std::uint32_t> point_;
   std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_, wall_half_;
   double widest_mm_ = 0;
@@ -118,11 +139,11 @@ std::vector<ChipSample> chips_of(const EnvelopeBlocks& blocks, std::span<const C
 double chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipSample> chips);
 double chip_volume_mm3(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, std::span<const ChipBlock> chips);
 
-/// As chip_volume_mm3 of undeflected chips, with the area that the edge sweeps as the tool deflects: chip thickness is
-/// along the normal n of the envelope, and the surface p + delta has the area
+/// Volume of the chips of a deflected cutter, mm^3: chip_volume_mm3 with the area that the edge really sweeps.
+/// Chip thickness is along the normal n of the envelope, and the surface p + delta has the area
 ///   n . (d(p + delta)/dphi x d(p + delta)/ds) dphi ds = (1 + d(delta)/(r dphi) . t + d(delta)/ds . m) dA,
 /// t along the circle of latitude, m along the meridian. A deflection that changes by 5 % of the path length of the
-/// edge changes the volume by 5 %. `row`: of the stamp, as those of `deflections`.
+/// edge changes the volume by 5 %. `row`: the stamp's row of `deflections`.
 double swept_chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipSample> chips,
                              const DeflectionTable& deflections, const float* row);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Arcs whose words are rounded and still close.
+// Rounds the words of arcs such that the arcs still close.
 #include <optional>
 
 #include "base/geometry.h"
@@ -9,9 +9,9 @@ namespace camber::nc {
 
 /// An arc after rounding of its ends in the text.
 struct WantedArc {
-  Vec3 start_mm, end_mm;  ///< as the text says them
+  Vec3 start_mm, end_mm;  ///< points as the text says them
   Vec3 center_mm;         ///< wished; moved along the line that keeps both radii equal
-  double sweep_rad = 0;   ///< of the arc that it replaces: tells a small arc from nearly a full turn
+  double sweep_rad = 0;   ///< sweep of the arc that it replaces: tells a small arc from nearly a full turn
   Plane plane = Plane::xy;
   int turns = 1;           ///< P
   bool full_turn = false;  ///< start and end coincide in the plane

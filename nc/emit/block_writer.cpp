@@ -7,7 +7,7 @@
 namespace camber::nc {
 namespace {
 
-constexpr std::string_view kOrder = "XYZIJKR";  ///< of words that are added at one place
+constexpr std::string_view kOrder = "XYZIJKR";  ///< order of words that are added at one place
 
 std::string_view number_text(const Program& program, const Word& word) {
   return std::string_view(program.source.text())

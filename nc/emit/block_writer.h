@@ -1,5 +1,5 @@
 #pragma once
-// One block's text with some of its words changed.
+// Writes one block's text with some of its words changed.
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,8 +47,8 @@ class BlockWriter {
 
  private:
   struct Change {
-    std::size_t at;      ///< offset in the file
-    std::size_t length;  ///< of what is replaced
+    std::size_t at;      ///< position in the file
+    std::size_t length;  ///< length of what is replaced
     std::string text;
     char letter;
     double value;

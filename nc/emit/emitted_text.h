@@ -1,5 +1,5 @@
 #pragma once
-// The emitted text in the making: the given one, blocks that become others, and a header.
+// Puts the emitted text together: the given one, blocks that become others, and a header.
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace camber::nc {
 
-/// What a further line of the text begins behind: "\n", "\r\n" or "\r".
+/// Line end behind which a further line of the text begins: "\n", "\r\n" or "\r".
 std::string_view usual_line_end(const SourceText& source);
 
 class TextRules;

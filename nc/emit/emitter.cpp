@@ -185,7 +185,7 @@ void Emitter::pass_over(std::size_t first, std::size_t end) {
   }
 }
 
-/// What the block relies on beside position and feed, where an edit before it has changed that.
+/// Puts lines before a block that restore what it relies on beside position and feed, where an edit has changed that.
 void Emitter::put_lines_before(std::uint32_t block) {
   const std::string lines = rules_->lines_before(block);
   if (lines.empty()) return;

@@ -1,5 +1,5 @@
 #pragma once
-// Goes through the moves in their order and decides what each block becomes. Behind the door nc/emit.h.
+// Emitter: goes through the moves in their order and decides what each block becomes. Behind the door nc/emit.h.
 //   emitter.cpp        the walk over the blocks; which edits cannot be made; the end points of one axis
 //   emitter_lines.cpp  lines, rapids, drilling cycles
 //   emitter_arcs.cpp   arcs
@@ -37,7 +37,7 @@ class Emitter {
   static constexpr char kAxis[] = "XYZ";
   static constexpr double kSamePlaceMm = 1e-9;  ///< sums of increments; far below any decimal
 
-  /// One of the moves that a block becomes.
+  /// A move that a block becomes.
   struct Piece {
     Vec3 end_mm;
     double feed_mm_per_s = 0;
@@ -64,7 +64,8 @@ class Emitter {
   double length_mm_of(const Vec3& from, const Vec3& to) const;
 
   // emitter.cpp: one axis
-  /// Whether the axis word of the block counts from where the tool stands; without one: a word that would be added.
+  /// Returns whether the axis word of the block counts from where the tool stands; without one: a word that would be
+  /// added.
   bool incremental(const Move& move, const Word* word) const {
     return rules_->incremental(moves_.state_of(move), word);
   }
@@ -112,8 +113,8 @@ class Emitter {
   MoveEdit without_feeds_;          ///< the edit of the block, where its feeds cannot be made
   const Move* last_cut_ = nullptr;  ///< the last one with a feed of its own making
   std::size_t next_edit_ = 0;
-  Vec3 at_ = Vec3::Zero();   ///< where the emitted program has taken the tool
-  std::uint32_t index_ = 0;  ///< of the block's first move
+  Vec3 at_ = Vec3::Zero();   ///< place to which the emitted program has taken the tool
+  std::uint32_t index_ = 0;  ///< index of the block's first move
   std::size_t end_ = 0;      ///< behind its last one
   const Frame* frame_ = nullptr;
   double unit_mm_ = 1;

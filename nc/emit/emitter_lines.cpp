@@ -73,8 +73,8 @@ void Emitter::go_on_line(BlockWriter& writer, const Move& move, const MoveEdit* 
   if (writer.changed() || !more.empty()) text_.replace(move.block, writer.text(text_.line_end_of(move.block)) + more);
 }
 
-/// To the via points and to the end. Points that the decimals cannot tell from the start or the end are left out: they
-/// would be moves without length.
+/// Writes moves to the via points and to the end. Points that the decimals cannot tell from the start or the end are
+/// left out: they would be moves without length.
 std::vector<Emitter::Piece> Emitter::pieces_of(const Move& move, const MoveEdit* edit) {
   if (!edit) return {{move.end_mm, move.feed_mm_per_s}};
   const Vec3 end = edit->end_mm.value_or(move.end_mm);

@@ -42,7 +42,7 @@ void FeedWords::read_style() {
   decimals_ = feed_decimals_of(*program_);
 }
 
-/// As many decimals as the program's F words have, or more where it takes them to be right.
+/// Returns as many decimals as the program's F words have, or more where it takes them to be right.
 int FeedWords::decimals_for(double value) {
   read_style();
   int decimals = decimals_;

@@ -1,5 +1,5 @@
 #pragma once
-// The modal feed of the program as it is emitted, and the F words that it takes.
+// Follows the modal feed of the emitted program and decides the F words that it takes.
 #include <optional>
 
 #include "nc/emit/block_writer.h"
@@ -13,7 +13,7 @@ class FeedWords {
  public:
   struct Astray {
     double now = 0;    ///< modal feed of the emitted text, mm/min or mm a turn
-    double given = 0;  ///< of the given one
+    double given = 0;  ///< feed of the given program
   };
 
   FeedWords(const Program& program, const Interpretation& moves) : program_(&program), moves_(&moves) {}
@@ -23,7 +23,7 @@ class FeedWords {
 
   /// True when the modal feed of the emitted text is another one than that of the given text.
   bool astray() const { return astray_.has_value(); }
-  /// For a block that is tried and given up.
+  /// Goes back to a state, for a block that is tried and given up.
   const std::optional<Astray>& state() const { return astray_; }
   void go_back_to(const std::optional<Astray>& state) { astray_ = state; }
 
@@ -47,7 +47,7 @@ class FeedWords {
 
   const Program* program_;
   const Interpretation* moves_;
-  std::optional<NumberStyle> style_;  ///< of F words; read when one is needed
+  std::optional<NumberStyle> style_;  ///< style of F words; read when one is needed
   int decimals_ = 0;                  ///< the most that the program's F words have
   std::optional<Astray> astray_;
 };

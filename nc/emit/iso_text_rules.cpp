@@ -10,7 +10,7 @@
 namespace camber::nc {
 namespace {
 
-constexpr std::string_view kOrder = "XYZIJKR";  ///< where added words go
+constexpr std::string_view kOrder = "XYZIJKR";  ///< order of words, where added ones go
 
 bool has_code(std::span<const Word> words, char letter, std::initializer_list<double> codes) {
   return std::any_of(words.begin(), words.end(), [&](const Word& w) {

@@ -1,5 +1,5 @@
 #pragma once
-// Arcs of languages that say the centre by I J K and the radius by R.
+// Writes arcs of languages that give the centre by I J K and the radius by R.
 #include "nc/emit/text_rules.h"
 
 namespace camber::nc {
@@ -16,7 +16,7 @@ class LetterArcs : public TextRules {
   bool motion_is_modal() const override { return true; }
 
  protected:
-  static constexpr char kCentre[] = "IJK";  ///< by axis
+  static constexpr char kCentre[] = "IJK";  ///< one letter per axis
 };
 
 }  // namespace camber::nc

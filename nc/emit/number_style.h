@@ -1,5 +1,5 @@
 #pragma once
-// How a program writes its numbers, so that a changed word looks like its neighbours.
+// Number style: how a program writes its numbers, so that a changed word looks like its neighbours.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,10 +19,10 @@ struct NumberStyle {
   bool comma = false;                    ///< 12,5
 };
 
-/// What most of the coordinates of the program do.
+/// Returns the style of most coordinates of the program.
 NumberStyle style_of(const Program& program);
 
-/// What most of its F words do; blanks as beside coordinates.
+/// Returns the style of most F words; blanks as beside coordinates.
 NumberStyle feed_style_of(const Program& program);
 
 /// Most decimals that an F word of the program has; 0 where none has a point.

@@ -8,7 +8,8 @@
 namespace camber::nc {
 namespace {
 
-/// What stands between the end of the block and the next one: "\n", "\r\n"; of a file's last line, what the file uses.
+/// Returns the text between the end of the block and the next one: "\n", "\r\n"; of a file's last line, what the file
+/// uses.
 std::string_view line_end_of(const Program& program, std::size_t block) {
   const std::string_view text = program.source.text();
   if (block + 1 < program.blocks.size()) {

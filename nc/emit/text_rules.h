@@ -1,6 +1,6 @@
 #pragma once
-// How a language writes the words that an edit changes. The emitter decides what each block becomes; the rules say how
-// the language puts it. One object for each emission: rules may follow what was written.
+// Text rules: how a language writes the words that an edit changes. The emitter decides what each block becomes; the
+// rules say how the language puts it. One object for each emission: rules may follow what was written.
 #include <cstdint>
 #include <span>
 #include <string>
@@ -45,15 +45,15 @@ class TextRules {
   virtual bool reads_feed() const { return false; }
 
   // Coordinates
-  /// Whether the axis word counts from where the tool stands; `word` null: a word that would be added.
+  /// Returns whether the axis word counts from where the tool stands; `word` null: a word that would be added.
   virtual bool incremental(const ModalState& state, const Word* word) const = 0;
 
   // Text
-  /// What style_of does not see of the program's numbers.
+  /// Adds to the number style what style_of does not see.
   virtual void adapt(NumberStyle&) const {}
   /// A new word: "X12.5", "X+12.5", "CR=8". `number` is in the style of the program.
   virtual std::string new_word(std::uint32_t block, char letter, const std::string& number) const = 0;
-  /// Where a new word goes in the block, and whether the blank that parts it from its neighbour comes before it.
+  /// Place of a new word in the block, and whether the blank that parts it from its neighbour comes before it.
   struct Place {
     std::size_t offset = 0;
     bool behind = true;  ///< a neighbour; else in front of one
@@ -78,8 +78,8 @@ class TextRules {
   /// A further arc behind it: the block's text. `words`: end point and feed.
   virtual std::string further_arc(BlockWriter& writer, std::vector<NewWord> words, const WantedArc& wanted,
                                   const RoundedArc& arc, double unit_mm, int decimals, std::span<const Word> own) = 0;
-  /// What was written before has changed what the block relies on beside position and feed (a pole): lines to put
-  /// before it; empty: nothing.
+  /// Returns lines to put before a block, where earlier edits have changed what it relies on beside position and feed
+  /// (a pole); empty: none.
   virtual std::string lines_before(std::uint32_t) { return {}; }
 
   // Runs of cuts that are written anew

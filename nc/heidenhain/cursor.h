@@ -20,7 +20,7 @@ class Cursor {
   void go_to(std::size_t offset) { at_ = offset; }
   std::size_t end() const { return end_; }
 
-  /// To the next character that means something; false at the end.
+  /// Advances to the next character that means something; returns false at the end.
   bool more() {
     while (at_ < end_) {
       const char c = text_[at_];

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLines = 400;  ///< looked at
 
-/// What begins a line in Klartext and in no other language.
+/// Beginnings of lines that only Klartext has.
 constexpr std::array<std::string_view, 14> kPairs{"BEGIN PGM", "END PGM",   "BLK FORM",      "TOOL CALL",  "TOOL DEF",
                                                   "CYCL DEF",  "CYCL CALL", "CYCLE DEF",     "CALL LBL",   "CALL PGM",
                                                   "SEL PGM",   "TCH PROBE", "FUNCTION TCPM", "PLANE RESET"};

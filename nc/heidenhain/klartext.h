@@ -55,7 +55,8 @@ struct BlockValues {
   bool turns() const { return rotary[0] || rotary[1] || rotary[2]; }
 };
 
-/// What cycles 7, 8, 10, 11 and 26 say together: a point is scaled, turned, mirrored and shifted, in this order.
+/// The transform that cycles 7, 8, 10, 11 and 26 make together: a point is scaled, turned, mirrored and shifted, in
+/// this order.
 struct Transform {
   Vec3 shift_mm = Vec3::Zero();
   std::array<bool, 3> mirror{};
@@ -103,7 +104,7 @@ class Klartext {
   };
   struct Cycle {
     int number = -1;                 ///< none
-    std::map<int, double> values{};  ///< of old cycles: by the number behind the point
+    std::map<int, double> values{};  ///< values of old cycles, by the number behind the point
     std::map<int, double> feeds{};
     double radius = 0, sense = -1;
     std::size_t offset = 0;
@@ -221,7 +222,7 @@ class Klartext {
   void define_pattern(const Statement& s);
   struct Hole {
     double surface_mm = 0, clearance_mm = 0, second_mm = 0;
-    double depth_mm = 0;  ///< from the surface, negative
+    double depth_mm = 0;  ///< depth from the surface, negative
     double peck_mm = 0, less_mm = 0, least_mm = 0;
     double above_mm = 0.2;  ///< rapids in the hole stop so far above the last depth
     int breaks = 0;         ///< chip breaks before the tool leaves the hole
@@ -230,7 +231,7 @@ class Klartext {
     double pre_feed_mm_per_s = 0, feed_mm_per_s = 0;
     std::optional<double> feed_out_mm_per_s{};
     double dwell_s = 0, dwell_top_s = 0;
-    Vec3 off_mm = Vec3::Zero();  ///< off the wall before the tool leaves
+    Vec3 off_mm = Vec3::Zero();  ///< motion off the wall before the tool leaves
   };
   void drill_hole(const Hole& hole);
   void bore_back();
@@ -255,7 +256,7 @@ class Klartext {
 
   std::vector<Level> levels_;
   std::map<std::pair<const Tree*, std::size_t>, int> repeats_left_;
-  std::vector<std::uint8_t> runs_;  ///< of each block of the main program, up to 255
+  std::vector<std::uint8_t> runs_;  ///< number of runs of each block of the main program, up to 255
   std::size_t repeated_ = 0;
   std::map<std::string, std::unique_ptr<Program>> files_;
   std::string selected_program_;

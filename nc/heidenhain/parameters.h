@@ -11,7 +11,7 @@
 
 namespace camber::nc::heidenhain {
 
-/// What is wrong with a formula or a value, and where.
+/// An error in a formula or a value, and its place.
 struct FormulaError : std::runtime_error {
   FormulaError(std::size_t at, std::string name, const std::string& message)
       : std::runtime_error(message), offset(at), check(std::move(name)) {}
@@ -35,12 +35,12 @@ class Parameters {
   /// The value; NaN where only the machine knows it. Throws FormulaError [undefined-parameter] where it was never set.
   double value(const ParameterName& name, std::size_t offset);
   void set(const ParameterName& name, double value);
-  /// Only the machine knows it: `why` is said where a move depends on it.
+  /// Marks a value that only the machine knows: `why` is said where a move depends on it.
   void set_unknown(const ParameterName& name, std::string why);
   const std::string& text(int number) const;
   void set_text(int number, std::string value) { texts_[number] = std::move(value); }
 
-  /// Of the last NaN that value() gave.
+  /// Returns the reason for the last NaN that value() gave.
   const std::string& why_unknown() const { return why_; }
 
   /// QL parameters belong to a program: called programs have their own.

@@ -446,7 +446,7 @@ Vec3 Klartext::last_direction() const {
   return Vec3::Zero();
 }
 
-/// What follows relies on where the last move ends.
+/// Notes that what follows relies on the end of the last move.
 void Klartext::fix_last_end() { fix_end(out_.moves.size()); }
 
 /// The same of the move before `behind`; which one that can be is known at the end (finish).

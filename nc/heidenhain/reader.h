@@ -1,5 +1,5 @@
 #pragma once
-// From the text to statements and words.
+// Reads a Klartext program: from the text to statements and words.
 #include <string_view>
 
 #include "base/diagnostics.h"
@@ -11,7 +11,7 @@ namespace camber::nc::heidenhain {
 /// them; unknown statements are Kind::refused.
 Program read_text(SourceText source, Diagnostics& diagnostics);
 
-/// What to say of a statement that is refused, and the name of the check.
+/// Returns what to say of a statement that is refused, and the name of the check.
 struct Refusal {
   std::string message;
   std::string check;

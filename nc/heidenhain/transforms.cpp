@@ -244,7 +244,7 @@ void Klartext::set_working_plane(Cursor at, int part) {
     tilt(spatial(angles), false, statement_->begin);
 }
 
-/// Of a feed move.
+/// Notes the plane of a feed move.
 void Klartext::note_cut_plane() {
   if (!options_.rotary_axes.empty() || cut_planes_.size() > 1) return;
   const auto same = [](const Matrix& a, const Matrix& b) { return (a - b).cwiseAbs().maxCoeff() < 1e-9; };

@@ -1,5 +1,5 @@
 #pragma once
-// What a Klartext program is made of: statements, one for each block of the control (a line and those that continue
+// Syntax tree of a Klartext program: statements, one for each block of the control (a line and those that continue
 // it).
 #include <cstdint>
 #include <map>
@@ -55,17 +55,17 @@ constexpr bool has_words(Kind kind) { return kind >= Kind::line && kind <= Kind:
 
 /// Letters of Program::words that are no address of the text.
 namespace letter {
-inline constexpr char kCompensation = 'r';           ///< R0 RL RR R+ R-: value 0, 1, 2, 3, 4
-inline constexpr char kSense = 'd';                  ///< DR+ DR-: 1, -1
-inline constexpr char kRapid = 'm';                  ///< FMAX
-inline constexpr char kAutoFeed = 'a';               ///< FAUTO
-inline constexpr char kFeedPerTurn = 'u';            ///< FU
-inline constexpr char kFeedPerTooth = 'z';           ///< FZ
-inline constexpr char kPolarRadius = 'p';            ///< PR
-inline constexpr char kPolarAngle = 'g';             ///< PA
-inline constexpr char kLength = 'l';                 ///< LEN
-inline constexpr char kArcAngle = 'c';               ///< CCA
-inline constexpr char kArgument = 'f';               ///< of the M function before it: F of M128, MB of M140, LA of M120
+inline constexpr char kCompensation = 'r';  ///< R0 RL RR R+ R-: value 0, 1, 2, 3, 4
+inline constexpr char kSense = 'd';         ///< DR+ DR-: 1, -1
+inline constexpr char kRapid = 'm';         ///< FMAX
+inline constexpr char kAutoFeed = 'a';      ///< FAUTO
+inline constexpr char kFeedPerTurn = 'u';   ///< FU
+inline constexpr char kFeedPerTooth = 'z';  ///< FZ
+inline constexpr char kPolarRadius = 'p';   ///< PR
+inline constexpr char kPolarAngle = 'g';    ///< PA
+inline constexpr char kLength = 'l';        ///< LEN
+inline constexpr char kArcAngle = 'c';      ///< CCA
+inline constexpr char kArgument = 'f';      ///< argument of the M function before it: F of M128, MB of M140, LA of M120
 inline constexpr char kNormal[3] = {'n', 'o', 'q'};  ///< NX NY NZ
 inline constexpr char kTool[3] = {'t', 'v', 'w'};    ///< TX TY TZ
 }  // namespace letter
@@ -78,13 +78,13 @@ struct Statement {
   std::uint32_t lines = 1;
   std::uint32_t begin = 0;  ///< offset behind the number
   std::uint32_t at = 0;     ///< behind the keyword
-  std::uint32_t end = 0;    ///< of the last line
+  std::uint32_t end = 0;    ///< end of the last line
   std::uint32_t first_word = 0, word_count = 0;
 };
 
 struct Tree : LanguageTree {
   std::vector<Statement> statements;
-  std::map<std::string, std::uint32_t, std::less<>> labels;  ///< by number or name: their statements
+  std::map<std::string, std::uint32_t, std::less<>> labels;  ///< statements of labels, by number or name
   bool inch = false;
   std::uint32_t begin_statement = 0;  ///< BEGIN PGM; 0 where there is none
 

@@ -36,7 +36,7 @@ struct CycleCall {
   }
 };
 
-/// Where a block stands.
+/// Place of a block.
 struct BlockPlace {
   const Program* file = nullptr;
   std::uint32_t block = 0;
@@ -56,7 +56,7 @@ class BlockRunner : public SystemValues {
   void set_tool_name(const std::string& name, std::uint32_t offset);
   /// Carries the block out. Returns false at the end of the program (M2, M30); `ends_subprogram`: M17 was in it.
   bool execute(bool& ends_subprogram);
-  /// Whether the last executed block has moved X, Y or Z: MCALL acts behind it.
+  /// Returns whether the last executed block has moved X, Y or Z: MCALL acts behind it.
   bool has_moved() const { return moved_; }
 
   void run_cycle(const CycleCall& call, const BlockPlace& place);

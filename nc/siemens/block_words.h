@@ -1,5 +1,5 @@
 #pragma once
-// The words of one block with their values.
+// Gives the words of one block with their values.
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -58,7 +58,7 @@ class BlockWords {
   }
   bool uses_extras() const { return extras_used_; }
   bool empty() const { return letters_used_ == 0 && !extras_used_ && g.empty() && m.empty(); }
-  /// Of the block's first word.
+  /// Position of the block's first word.
   std::size_t offset() const { return offset_; }
 
   std::vector<CodeWord> g, m;

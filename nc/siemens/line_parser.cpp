@@ -57,7 +57,7 @@ void LineParser::fail(std::size_t at, std::string_view check, const std::string&
   throw ParseError(at, check, message);
 }
 
-/// What stands at a place, for messages.
+/// Returns the text at a place, for messages.
 std::string LineParser::quoted(std::size_t begin) const {
   if (begin >= end_ || text_[begin] == ';') return "the end of the block";
   std::size_t to = begin;

@@ -1,5 +1,5 @@
 #pragma once
-// One block of a Sinumerik program that is not plain words alone.
+// Parses one block of a Sinumerik program that has more than plain words.
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace camber::nc::siemens {
 
-/// What is wrong with a block.
+/// An error in a block.
 struct ParseError : std::runtime_error {
   ParseError(std::size_t at, std::string_view name, const std::string& message)
       : std::runtime_error(message), offset(at), check(name) {}

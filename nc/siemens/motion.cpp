@@ -134,7 +134,7 @@ Vec3 BlockRunner::target_in_program() {
   return end;
 }
 
-/// What follows is computed from where the last move ends: an edit there would move it.
+/// Notes that what follows is computed from the end of the last move: an edit there would move it.
 void BlockRunner::keep_last_move() {
   for (std::size_t m = out_.moves.size(); m-- > 0;) {
     if (out_.moves[m].kind == MoveKind::dwell) continue;

@@ -1,5 +1,5 @@
 #pragma once
-// Subprograms: parts of the file, and files beside the main program.
+// Finds subprograms: parts of the file, and files beside the main program.
 #include <map>
 #include <memory>
 #include <optional>

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPowersOfTen[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                    1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
 
-constexpr char kEndOfFile = '\x1a';  ///< of old systems
+constexpr char kEndOfFile = '\x1a';  ///< end-of-file mark of old systems
 
 /// Letters of plain words.
 constexpr bool is_plain(char letter) {
@@ -180,7 +180,7 @@ class Reader {
         {'N', 1, static_cast<std::uint16_t>(to - begin), static_cast<std::uint32_t>(begin), value});
   }
 
-  /// What edits may change of a statement, under the letters of all languages.
+  /// Adds a word that edits may change, under the letter that it has in all languages.
   void add_word(const Item& item) {
     if (item.kind != ItemKind::word || item.index != kNone) return;
     const std::string& name = tree_.names[item.name];

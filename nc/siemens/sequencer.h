@@ -1,5 +1,5 @@
 #pragma once
-// Which block runs next: jumps, loops, subprograms, modal calls.
+// Sequencer: decides which block runs next (jumps, loops, subprograms, modal calls).
 #include <map>
 #include <memory>
 #include <optional>
@@ -91,7 +91,7 @@ class Sequencer {
   bool running_ = true;
   bool ended_ = false;
   std::uint32_t block_ = 0;         ///< the one at hand
-  std::vector<std::uint8_t> runs_;  ///< of the main file
+  std::vector<std::uint8_t> runs_;  ///< counts of the main file
   std::map<const Program*, std::vector<std::uint8_t>> other_runs_;
   std::size_t repeated_ = 0;
   bool block_has_expression_ = false;

@@ -123,7 +123,7 @@ class SiemensTextRules : public LetterArcs {
  private:
   const Statement* statement(std::uint32_t block) const { return tree_of(program_).statement(block); }
 
-  /// What stands between the address and the number, in upper case: "", "=", "=IC(".
+  /// Returns the text between the address and the number, in upper case: "", "=", "=IC(".
   std::string form_of(const Word& word) const {
     std::string out;
     for (std::size_t i = 1; i < word.value_at; ++i) out += upper(program_.source.text()[word.offset + i]);

@@ -1,5 +1,5 @@
 #pragma once
-// What a Sinumerik program says beside its plain words: names, expressions, calls, flow control.
+// Syntax tree of a Sinumerik program, beside its plain words: names, expressions, calls, flow control.
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -50,29 +50,29 @@ enum class NodeKind : std::uint8_t {
 /// A node of an expression. Children are arguments: Tree::arguments[first, first + count), indexes into Tree::nodes.
 struct Node {
   NodeKind kind = NodeKind::number;
-  std::uint32_t offset = 0, length = 0;  ///< in the text
+  std::uint32_t offset = 0, length = 0;  ///< position in the text
   double number = 0;
-  std::uint32_t name = kNone;  ///< index into Tree::names; of a text into Tree::texts
+  std::uint32_t name = kNone;  ///< index into Tree::names; for a text into Tree::texts
   std::uint32_t first = 0, count = 0;
 };
 
-/// How the value of an axis or centre counts: X=IC(5), I=AC(30), C=DC(90).
+/// Meaning of the value of an axis or centre: X=IC(5), I=AC(30), C=DC(90).
 enum class Dimension : std::uint8_t { as_modal, absolute, incremental, nearest, positive, negative };
 
 enum class ItemKind : std::uint8_t {
   word,     ///< an address with a value: X10, X=R1, CR=8, M3=3, SPOS[1]=90
   command,  ///< a word alone: TRANS, SUPA, G codes are words
   call,     ///< NAME(...), NAME, L140: a cycle or a subprogram
-  assign,   ///< of a variable or a parameter
+  assign,   ///< assignment to a variable or a parameter
   label     ///< NAME:
 };
 
-/// One part of a block.
+/// A part of a block.
 struct Item {
   ItemKind kind = ItemKind::word;
   Dimension dimension = Dimension::as_modal;
   bool constant = false;         ///< the value is the number `number`
-  bool brackets = false;         ///< of a call: written with brackets
+  bool brackets = false;         ///< a call is written with brackets
   std::uint32_t name = kNone;    ///< index into Tree::names: "X", "CR", "CYCLE81", "SLOT"
   const WordRow* row = nullptr;  ///< what the name is, where it is a word of the language
   std::uint32_t offset = 0, length = 0;
@@ -104,7 +104,7 @@ enum class FlowKind : std::uint8_t {
   leave         ///< RET, M17, M2, M30 are words
 };
 
-/// Where a jump goes: a label or block number; the search goes forward, backward, or first forward.
+/// Target of a jump: a label or block number; the search goes forward, backward, or first forward.
 struct Jump {
   enum class Search : std::uint8_t { forward, backward, both, start } search = Search::both;
   bool silent = false;  ///< GOTOC: no error where there is no target
@@ -135,7 +135,7 @@ struct Statement {
   std::uint32_t condition = kNone;       ///< a node: of IF, WHILE, UNTIL, CASE; of FOR the first value
   std::uint32_t last = kNone;            ///< a node: of FOR the last value; of REPEAT the count (P)
   std::uint32_t variable = kNone;        ///< an item: the assigned variable of FOR
-  std::vector<Jump> jumps;               ///< of jump: one; of CASE as many as constants, DEFAULT last
+  std::vector<Jump> jumps;               ///< one for a jump; for CASE as many as constants, DEFAULT last
   std::vector<std::uint32_t> constants;  ///< nodes, of CASE
   std::vector<std::uint32_t> labels;     ///< names, of REPEAT
   std::vector<Declared> declared;        ///< DEF; PROC: parameters
@@ -145,7 +145,7 @@ struct Statement {
   std::vector<Item> items;
 };
 
-/// One program of the file: the whole file, or a part behind %_N_NAME_SPF.
+/// A program of the file: the whole file, or a part behind %_N_NAME_SPF.
 struct Part {
   std::string name;  ///< upper case, without _N_ and the type: "SLOT"; of the first part empty where nothing names it
   std::uint32_t first = 0, end = 0;  ///< blocks
@@ -158,7 +158,7 @@ struct Tree : LanguageTree {
   std::vector<Statement> statements;                               ///< ascending by block
   std::vector<Part> parts;                                         ///< at least one
   std::map<std::string, std::vector<std::uint32_t>> labels;        ///< blocks; names, and ":100" of main blocks
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers{};  ///< of N words and their blocks, ascending
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers{};  ///< N words and their blocks, ascending
 
   const Statement* statement(std::uint32_t block) const;
   /// Blocks with a label or block number ("N100"), ascending.

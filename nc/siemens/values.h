@@ -44,11 +44,11 @@ struct Variable {
   std::size_t count() const { return values.size(); }
 };
 
-/// What the evaluator asks of the interpreter.
+/// Interface through which the evaluator asks the interpreter.
 class SystemValues {
  public:
   virtual ~SystemValues() = default;
-  /// Of $P_EP[X] and the like; nothing: it is not known.
+  /// Returns the value of $P_EP[X] and the like; nothing: it is not known.
   virtual std::optional<Value> system_value(const std::string& name, const std::vector<Value>& indexes,
                                             const std::vector<std::string>& index_names) = 0;
   virtual double unit_mm() const = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// The words of the language: what each is and what the reader does with it. docs/nc-language-siemens.md has the table.
+// Table of the words of the language: what each is and what the reader does with it
+// (docs/reference/nc-language-siemens.md).
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -13,7 +14,7 @@ enum class WordKind : std::uint8_t {
   procedure  ///< NAME(...): a predefined one that does not move
 };
 
-/// What the interpreter does.
+/// Treatment of a word by the interpreter.
 enum class Does : std::uint8_t {
   nothing,  ///< has no effect on the path: read, and nothing is said
   noted,    ///< read without effect, and said: the path or its time depends on it on a real control
@@ -76,11 +77,11 @@ struct WordRow {
   std::string_view name;
   WordKind kind = WordKind::command;
   Does does = Does::nothing;
-  std::string_view what;          ///< for the table
+  std::string_view what;          ///< text for the table
   std::string_view instead = {};  ///< refused: what could be done
 };
 
-/// All of them, by name.
+/// Returns all words, by name.
 std::span<const WordRow> word_rows();
 /// Null for a name that is none of them.
 const WordRow* find_word(std::string_view upper_name);

@@ -29,10 +29,10 @@ namespace {
 /// A tile that is being cut.
 struct CutTile {
   ColumnCover cover;
-  double material;  ///< as it was loaded, voxels
+  double material;  ///< volume of material when it was loaded, voxels
   bool changed = false;
-  std::vector<std::int32_t> group{};  ///< of the stamps that are cut together, those that reach it
-  bool cut = false;                   ///< by a stamp with this tip and bend last
+  std::vector<std::int32_t> group{};  ///< stamps that are cut together and reach the tile
+  bool cut = false;                   ///< whether a stamp has cut it; tip and bend are those of the last one
   Vec3 last_tip_mm = Vec3::Zero();
   double last_deflection_mm = 0;
 };
@@ -46,18 +46,18 @@ struct DeflectedEngager::Impl {
   std::span<const Stamp> all;
   std::int32_t first_id;
   std::size_t from = 0;             ///< its first stamp
-  std::span<const Stamp> stamps{};  ///< of the stretch
+  std::span<const Stamp> stamps{};  ///< stamps of the stretch
   const DeflectionTable* deflections = nullptr;
   std::optional<PatchLanes> lanes{};
   std::optional<ChipReader> reader{};
   TileArena arena{};
-  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
+  std::vector<std::optional<CutTile>> tiles{};  ///< by the arena's numbers
   BendMemory memory{};
-  double removed_mm3 = 0;               ///< from tiles that were given back since the last commit
-  double max_deflection_mm = 0;         ///< of all stamps that were cut
+  double removed_mm3 = 0;               ///< volume removed from tiles given back since the last commit
+  double max_deflection_mm = 0;         ///< largest deflection of all stamps that were cut
   double max_axial_mm = 0;              ///< the same along the axis
-  std::vector<std::int32_t> patches{};  ///< that may take a chip
-  std::vector<char> glanced_point{};    ///< of the envelope: its patch is glanced at
+  std::vector<std::int32_t> patches{};  ///< patches that may take a chip
+  std::vector<char> glanced_point{};    ///< by envelope point: its patch belongs to the glance
   std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::vector<DeflectedChipSample> chips{};
@@ -68,9 +68,9 @@ struct DeflectedEngager::Impl {
   tbb::enumerable_thread_specific<GlanceBuffers> glance_buffers{};
   std::vector<double> glances{};
   std::optional<StampDeflections> bends{};
-  std::vector<StampDeflection> group{};     ///< of the stamps that are cut together
+  std::vector<StampDeflection> group{};     ///< stamps that are cut together
   std::vector<std::size_t> reached{};       ///< tiles
-  std::optional<tilted::Engager> tilted{};  ///< does everything for a path that is not upright
+  std::optional<tilted::Engager> tilted{};  ///< does all the work where the path is not upright
 
   void begin(const DeflectionTable& table);
   double glance(std::size_t k);

@@ -21,7 +21,7 @@ EnvelopeBlocks::EnvelopeBlocks(const EnvelopeGrid& e, double voxel_mm, double ba
     for (std::size_t l = 0; l < kLanes; ++l) lowest = std::min(lowest, z_[b * kLanes + l]);
     lowest_[b] = lowest;
   }
-  // Whole vectors; what fills the last one moves into nothing.
+  // Whole vectors: points that fill up the last one never take a chip.
   for (std::size_t n = block_.size(); n % kLanes != 0; ++n) {
     for (auto* v : {&bottom_, &centre_x_, &centre_y_, &centre_z_, &reach_, &normal_x_, &normal_y_, &normal_z_})
       v->push_back(0);
@@ -40,7 +40,7 @@ void EnvelopeBlocks::add(const EnvelopeGrid& e, const std::vector<float>& wall_h
     const auto p = static_cast<std::size_t>(in_r) * static_cast<std::size_t>(e.steps) +
                    static_cast<std::size_t>(first_of_pitch + in_s);
     const auto& profile = e.rings[static_cast<std::size_t>(in_r)].profile;
-    // Without a normal, and with a curvature that takes all away, no motion makes a chip.
+    // A lane without a normal, and with a curvature that removes every chip, never takes one.
     constexpr float kHollow_per_mm = -1e6f;
     const float counts = is_point ? 1.0f : 0.0f;
     if (is_point) real.push_back(p);
@@ -66,7 +66,7 @@ void EnvelopeBlocks::add(const EnvelopeGrid& e, const std::vector<float>& wall_h
     bottom = std::min(bottom, e.z[p]);
     spread = std::max(spread, (normal(p) - mean).norm());
   }
-  // From the voxel nearest to the centre; what the band does not reach across is never passed over.
+  // Measured from the voxel nearest to the centre; blocks wider than the band are never skipped.
   const double reach = extent + 0.87 * voxel_mm;
   reach_.push_back(reach < 0.999 * band_mm ? static_cast<float>(reach) : 1e9f);
   bottom_.push_back(bottom);

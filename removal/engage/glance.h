@@ -1,5 +1,6 @@
 #pragma once
-// A glance at an envelope: a few of its patches, scattered over it, always the same ones.
+// A glance is a cheap reading of a stamp: it looks at one patch of the envelope in eight, always the same ones. Its sum
+// of chip thicknesses shows whether the cut has changed since the last full reading.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,13 +9,13 @@
 
 namespace camber::removal {
 
-/// One patch in eight.
+/// Selects one patch in eight, scattered over the envelope by a multiplicative hash.
 inline bool glanced_at(std::uint32_t patch) {
   constexpr std::uint32_t kGolden = 2654435769u, kTopBits = 29;
   return patch * kGolden >> kTopBits == 0;
 }
 
-/// Thickness of the chips at points of those patches, summed up. `glanced_point`: by point of the envelope.
+/// Sums up the chip thicknesses, mm, at points of the selected patches. `glanced_point`: one entry per envelope point.
 inline double sum_of_glanced(std::span<const DeflectedChipSample> chips, const std::vector<char>& glanced_point) {
   double sum = 0;
   for (const DeflectedChipSample& c : chips)

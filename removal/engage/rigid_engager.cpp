@@ -28,9 +28,9 @@ namespace {
 /// A tile that is being cut.
 struct CutTile {
   ColumnCover cover;
-  double material;  ///< as it was loaded, voxels
+  double material;  ///< volume of material when it was loaded, voxels
   bool changed = false;
-  std::int32_t last = -1;  ///< stamp of the stretch that it took last
+  std::int32_t last = -1;  ///< last stamp of the stretch that cut it
   std::vector<std::int32_t> batch{};
 };
 
@@ -42,7 +42,7 @@ bool on_line_of_glances(std::span<const double> glances, std::size_t a, std::siz
   return expected > 0 && std::abs(glances[k] - expected) <= kMaterialChange * expected;
 }
 
-/// A path that is not upright: stamp by stamp, with chips sorted into blocks.
+/// Engages a path that is not upright, stamp by stamp, and sorts its chips into blocks.
 class TiltedPath {
  public:
   TiltedPath(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
@@ -165,11 +165,11 @@ class TiltedPath {
   tilted::Engager engager_;
   const EnvelopeBlocks& blocks_;
   int steps_;
-  std::vector<std::uint32_t> place_;  ///< of each point of the envelope in the blocks, lane by lane
+  std::vector<std::uint32_t> place_;  ///< place of each envelope point in the blocks, lane by lane
   DeflectionTable straight_;
   std::vector<std::pair<std::uint32_t, const ChipSample*>> sorted_;
   std::vector<ChipBlock> blocks_of_stamp_;
-  std::vector<double> glances_;    ///< of the stretch's stamps, where some are left out
+  std::vector<double> glances_;    ///< one per stamp of the stretch, where some stamps are not read
   std::vector<char> loads_known_;  ///< stamps that were read
 };
 
@@ -183,15 +183,15 @@ struct RigidEngager::Impl {
   std::int32_t first_id;
   EnvelopeBlocks blocks;
   BlockReader reader;
-  double removed_mm3 = 0;           ///< from tiles that were given back since the last commit
+  double removed_mm3 = 0;           ///< volume removed from tiles given back since the last commit
   std::size_t from = 0;             ///< its first stamp
-  std::span<const Stamp> stamps{};  ///< of the stretch
+  std::span<const Stamp> stamps{};  ///< stamps of the stretch
   StampOrder order{};
   TileArena arena{};
-  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
+  std::vector<std::optional<CutTile>> tiles{};  ///< by the arena's numbers
   tbb::enumerable_thread_specific<BlockReader::Buffers> buffers{};
-  std::vector<double> glances{};       ///< of the stretch's stamps, where some are left out
-  std::optional<TiltedPath> tilted{};  ///< does everything for a path that is not upright
+  std::vector<double> glances{};       ///< one per stamp of the stretch, where some stamps are not read
+  std::optional<TiltedPath> tilted{};  ///< does all the work where the path is not upright
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
        std::int32_t first_id_, int pitches)

@@ -19,16 +19,16 @@ using namespace upright;
 
 namespace {
 
-/// Tips may stand so far out of their box, mm: a path is made of sums.
+/// Distance by which tips may lie outside of their box, mm: rounding of a path that is summed up.
 constexpr double kRounding_mm = 1e-6;
 
-/// Tips that are known beforehand to the reader, before its lists grow.
+/// Number of tips for which the reader reserves space.
 constexpr std::size_t kExpectedStamps = std::size_t{1} << 23;
 
 /// A tile in which stamps are cut one by one.
 struct StepTile {
   ColumnCover cover;
-  double material;  ///< when it was read or written, voxels
+  double material;  ///< volume of material when it was read or written, voxels
   bool changed = false;
 };
 
@@ -49,9 +49,9 @@ struct StepEngager::Impl {
   BlockReader reader;
   StepArena arena;
   BatchCut batch_cut;
-  std::deque<std::optional<StepTile>> tiles{};  ///< by number; do not move
+  std::deque<std::optional<StepTile>> tiles{};  ///< by number; a deque, since tiles must not move in memory
   BlockReader::Buffers buffers{};
-  int widest_voxels;  ///< of a block of the envelope
+  int widest_voxels;  ///< widest block of the envelope, voxels
   double removed_voxels = 0;
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, const TipBox& box_, std::int32_t first_id_,
@@ -77,7 +77,7 @@ struct StepEngager::Impl {
   float voxel(const Index3& index) const;
 };
 
-/// Begins with the tiles that the arena has loaded last.
+/// Takes over the tiles that the arena has loaded last.
 void StepEngager::Impl::begin_fresh() {
   const auto tip_of = [&](std::int32_t id, Vec3& tip, double& deflection) {
     if (id < first_id) return false;
@@ -94,8 +94,8 @@ void StepEngager::Impl::begin_fresh() {
   }
 }
 
-/// The tiles around a tip, read where they are not there. Reading at many places, without a cut, brings tiles as
-/// cutting does: room is made before.
+/// Loads the tiles around a tip that are not in memory. Reading at many places without a cut loads tiles as well, so
+/// that old ones are given up first.
 std::span<const std::int32_t> StepEngager::Impl::reach(const Vec3& tip_mm) {
   give_up(StepArena::Keep::most, kAll);
   const auto near = arena.reach(stock, blank, envelope.shape, tip_mm);

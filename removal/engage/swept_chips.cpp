@@ -15,14 +15,14 @@ class RingDeflections {
     const Vec2 lower = node(w.lower, step);
     return lower + static_cast<double>(w.upper_fraction) * (node(w.upper, step) - lower);
   }
-  /// Axial, by a rotation step.
+  /// Derivative of the axial deflection by the rotation step.
   double axial_by_step(int step) const {
     const int last = deflections_.steps - 1;
     const float ahead = deflections_.axial_mm(row_, step == last ? 0 : step + 1);
     const float behind = deflections_.axial_mm(row_, step == 0 ? last : step - 1);
     return static_cast<double>(ahead - behind) / 2;
   }
-  /// By a rotation step.
+  /// Derivative of the lateral deflection by the rotation step.
   Vec2 by_step(const NodeWeight& w, int step) const {
     const int last = deflections_.steps - 1;
     return (at(w, step == last ? 0 : step + 1) - at(w, step == 0 ? last : step - 1)) / 2;

@@ -1,5 +1,5 @@
 #pragma once
-// Where the motion of a tool ends, and with it the chip.
+// The thickness below which a chip of rigid coupling counts as none.
 
 namespace camber::removal {
 

@@ -17,8 +17,8 @@ using upright::TileArena;
 namespace {
 
 constexpr float kSolid = std::numeric_limits<float>::infinity();
-constexpr std::size_t kFrames = 64;  ///< kept, a power of two
-/// Faces whose normal leans from the axis by less count as square to it; as removal/engage/upright/level_faces.cpp.
+constexpr std::size_t kFrames = 64;  ///< frames of other stamps that are kept; a power of two
+/// Faces whose normal leans from the axis by less count as square to it (the same limit as in upright/level_faces.cpp).
 constexpr double kSquare = 0.1, kWithin = 1 - 1e-6;
 
 float as_float(double v) { return static_cast<float>(v); }
@@ -27,7 +27,7 @@ float as_float(double v) { return static_cast<float>(v); }
 std::size_t tile_of(std::int32_t cell) { return static_cast<std::size_t>(cell / (2 * Tile::kVolume)); }
 int in_tile(std::int32_t cell) { return cell % (2 * Tile::kVolume); }
 
-/// The voxel of the arena that lies nearest to a place; of what is not there, one of air.
+/// Returns the voxel of the arena nearest to a place; an air voxel where no tile is loaded.
 std::int32_t nearest_voxel(const TileArena& arena, const Vec3& place_mm, double voxel_mm) {
   constexpr int kBits = 4, kIn = Tile::kCore - 1;
   static_assert(Tile::kCore == 1 << kBits);
@@ -85,7 +85,7 @@ ChipReader::Reading ChipReader::reading_of(std::size_t k) const {
           first ? 0 : deflections_.largest_axial_mm(before)};
 }
 
-/// As BlockKernels::find_blocks, with the motion of the patch's centre.
+/// Does what BlockKernels::find_blocks does, with the motion of the patch's centre.
 void ChipReader::find_patches(const TileArena& arena, const Reading& stamp, std::vector<std::int32_t>& out) const {
   const auto row = static_cast<std::ptrdiff_t>(stamp.k);
   const std::ptrdiff_t before = stamps_[stamp.k].first ? row : row - 1;
@@ -136,7 +136,8 @@ upright::StampBend ChipReader::bend_of(const Reading& stamp) const {
           as_float(stamp.axial_reach_mm)};
 }
 
-/// Deep points make their chips at once; air makes none. As upright::ChipReader.
+/// Sorts points by what the field shows: deep points give their chips at once, points in air none, the rest are listed
+/// as shallow (as in upright::ChipReader).
 void ChipReader::sort_points(const TileArena& arena, const Reading& stamp, const upright::LaneReading& reading,
                              int first_lane, int count, Buffers& b, std::vector<DeflectedChipSample>& out) const {
   const auto row = static_cast<std::ptrdiff_t>(stamp.k);
@@ -172,7 +173,7 @@ void ChipReader::sort_points(const TileArena& arena, const Reading& stamp, const
   }
 }
 
-/// Tells a point how far it lies below the blank's surface. False far out of it.
+/// Sets how far the point lies below the blank's surface. Returns false far outside of it.
 bool ChipReader::reach_below_blank(const TileArena& arena, const Reading& stamp, Shallow& p) const {
   if (!arena.blank(tile_of(p.cell))) return true;
   p.below_blank_mm = -as_float(arena.blank_at(p.cell, p.share).distance_mm(p.up_mm, stamp.frame.axis()));
@@ -213,8 +214,8 @@ void ChipReader::read(const TileArena& arena, const Reading& stamp, std::span<co
   }
 }
 
-/// Takes the part of a ring that lies in material between faces square to the axis: the blank's, and the floors that
-/// the cutter left before. As upright::part_in_material. False where there is none.
+/// Sets the part of a ring that lies in material between faces square to the axis: those of the blank, and the floors
+/// that the cutter left before (as upright::part_in_material). Returns false where there is none.
 bool ChipReader::place_in_ring(const TileArena& arena, const Reading& stamp, float half_mm, float axial_mm, Shallow& p,
                                Buffers& b) const {
   const auto half = static_cast<double>(half_mm);
@@ -268,8 +269,8 @@ void ChipReader::make_room(Buffers& b) {
   b.row.resize(most), b.id.resize(most);
 }
 
-/// The stamps that a cell's corners name, each with the place, the normal and the deflection in its own tool's frame.
-/// As upright::ChipReader.
+/// Lists the stamps that a cell's corners name, each with place, normal and deflection in its own tool's frame (as in
+/// upright::ChipReader).
 void ChipReader::add_pairs(const TileArena& arena, const Reading& stamp, Shallow& p, Buffers& b) const {
   p.first_pair = b.pairs;
   const std::int32_t* named = arena.view().stamp + p.cell;
@@ -300,7 +301,8 @@ void ChipReader::add_pairs(const TileArena& arena, const Reading& stamp, Shallow
   }
 }
 
-/// How much farther out than the straight cutter's a stamp's surface lies, by the corners that name it.
+/// Returns how much farther out a stamp's surface lies than that of the undeflected cutter, from the corners that name
+/// it.
 float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, std::int32_t id, const Frame& frame) const {
   const float* distance = arena.view().distance + p.cell;
   const std::int32_t* named = arena.view().stamp + p.cell;
@@ -318,7 +320,7 @@ float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, std::int3
 }
 
 void ChipReader::thin_pairs(Buffers& b) const {
-  // What fills the last vector: anything, of a row that there is.
+  // The last vector is filled up with any values of an existing row.
   for (std::size_t i = b.pairs; i % PatchLanes::kVector != 0; ++i) b.row[i] = 0;
   const auto end = b.known.begin() + static_cast<std::ptrdiff_t>(b.pairs);
   const bool any_known = std::find(b.known.begin(), end, 1.0f) != end;
@@ -335,7 +337,7 @@ void ChipReader::thin_pairs(Buffers& b) const {
       as_float(envelope_.shape.bottom_length_mm()), as_float(envelope_.shape.corner_radius_mm), kMinSlope);
 }
 
-/// As Kernels::thin_pairs, for any cutter.
+/// Does what Kernels::thin_pairs does, for any cutter profile.
 void ChipReader::thin_general(Buffers& b) const {
   for (std::size_t i = 0; i < b.pairs; ++i) {
     const auto vec = [&](const auto& x, const auto& y, const auto& z) {
@@ -352,7 +354,7 @@ void ChipReader::thin_general(Buffers& b) const {
   }
 }
 
-/// As upright::ChipReader.
+/// Returns the depth of a point, as upright::ChipReader::depth does.
 ChipReader::Depth ChipReader::depth(const TileArena& arena, const Reading& stamp, const Shallow& p,
                                     std::size_t end_pair, Buffers& b) const {
   const auto of_field = [&](float mm, const Vec3& outwards_in_tool, bool own_surface) {

@@ -1,6 +1,6 @@
 #pragma once
-// Which chips the points of patches take from the tiles, for a cutter whose axis points anywhere. As
-// removal/engage/upright/chip_reader.h, with places and normals carried between the tool's frame and the part's.
+// Reads from the stock's tiles which chips the points of a tilted cutter take. The counterpart of
+// removal/engage/upright/chip_reader.h: places and normals are carried between the tool's frame and the part's.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -19,24 +19,24 @@
 
 namespace camber::removal::tilted {
 
-/// What a reading counts as a chip.
+/// Decides what a reading counts as a chip.
 struct ReadingRule {
   bool rigid = false;  ///< the motion bounds the chip sharply: the cutter is not deflected
-  int pitches = 1;     ///< see RigidEngager
+  int pitches = 1;     ///< largest number of passings back to the surface of a chip, see RigidEngager
 };
 
-/// Reads for one stretch. Definitions of depth and chip thickness: removal/engagement.h.
+/// Reads the chips of one stretch. removal/engagement.h defines depth and chip thickness.
 class ChipReader {
  public:
-  /// A point whose chip the fields of the stamps around decide.
+  /// A point near the surface: its chip follows from the fields of the stamps around it.
   struct Shallow {
     std::uint32_t point;
     std::uint8_t cut_255;
     float cap_mm, limit_mm;  ///< what the motion allows; the largest depth that counts
     float below_blank_mm;
-    CellShare share;    ///< in its cell
-    std::int32_t cell;  ///< in the arena
-    Vec3 place_mm;      ///< that is judged; on the ring, above or below the point by `up_mm`
+    CellShare share;    ///< position within its cell
+    std::int32_t cell;  ///< number of the cell in the arena
+    Vec3 place_mm;      ///< place that is judged: on the ring, above or below the point by `up_mm`
     double up_mm;
     std::size_t first_pair;
   };
@@ -45,30 +45,30 @@ class ChipReader {
     std::int32_t stamp = -1;
     Frame frame{ToolPose{}};
     std::size_t turned_from = static_cast<std::size_t>(-1);  ///< Reading::number
-    Mat3 turn = Mat3::Identity();                            ///< from that stamp's frame to this one's
+    Mat3 turn = Mat3::Identity();                            ///< rotation from that stamp's frame to this one's
   };
-  /// What one thread needs; may be used for stamp after stamp.
+  /// Working memory of one thread; is used again for every stamp.
   struct Buffers {
     std::vector<Shallow> shallow;
-    std::size_t pairs = 0;  ///< of the lists below (upright::PairLanes); they are longer
+    std::size_t pairs = 0;  ///< entries in use of the lists below (upright::PairLanes), which are longer
     std::vector<float> x, y, z, nx, ny, nz, guess_x, guess_y, guess_z, known, farther, thickness;
     std::vector<std::int32_t> row, id;
-    std::vector<OtherStamp> others;  ///< that were needed last, by the lowest bits of their numbers
+    std::vector<OtherStamp> others;  ///< stamps needed last, indexed by the lowest bits of their numbers
   };
 
-  /// As upright::ChipReader.
+  /// Parameters: see upright::ChipReader. `rule` says what counts as a chip.
   ChipReader(const EnvelopeGrid& envelope, const upright::PatchLanes& lanes, std::span<const Stamp> all,
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
              const upright::BendMemory& memory, const ReadingRule& rule);
 
   /// A stamp that is read.
   struct Reading {
-    std::size_t k;       ///< of the stretch
-    std::size_t number;  ///< of all stamps
+    std::size_t k;       ///< index in the stretch
+    std::size_t number;  ///< index among all stamps
     Frame frame;
     ToothMotion motion;
-    /// How much more than its motion allows a point may take, since the stamp before was deflected otherwise when it
-    /// left the surface there.
+    /// Chip that a point may take beyond its motion bound, mm: the stamp before had another deflection when it left the
+    /// surface there.
     double reach_mm, axial_reach_mm;
   };
   Reading reading_of(std::size_t k) const;
@@ -80,10 +80,10 @@ class ChipReader {
             Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
 
  private:
-  /// Of the stock below a point.
+  /// Thickness of the stock below a point.
   struct Depth {
     float mm;
-    std::array<float, 3> deeper;  ///< by a deflection in x, y and z of the tool
+    std::array<float, 3> deeper;  ///< derivatives by a deflection along the tool's x, y and z
     bool own_surface;
   };
   upright::TiltedPlace place_of(const upright::TileArena& arena, const Reading& stamp) const;
@@ -116,7 +116,7 @@ class ChipReader {
   const upright::Kernels& kernels_;
   float node_step_mm_;
   double max_curved_per_mm_ = 0;
-  std::vector<float> wall_half_mm_;  ///< of the rings (removal/engage/upright/level_faces.h)
+  std::vector<float> wall_half_mm_;  ///< half widths of the rings (removal/engage/upright/level_faces.h)
 };
 
 }  // namespace camber::removal::tilted

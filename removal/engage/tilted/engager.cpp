@@ -24,7 +24,7 @@ namespace {
 
 /// A tile that is being cut.
 struct CutTile {
-  double material;  ///< as it was loaded, voxels
+  double material;  ///< volume of material when it was loaded, voxels
   bool changed = false;
   RowsDue rows{};
 };
@@ -36,7 +36,7 @@ struct KeptTile {
   CutTile cut;
 };
 
-/// Begins with the tiles that the arena has loaded last, and with the ways of a new stretch.
+/// Starts a new stretch: takes over the tiles that the arena has loaded last, and the ways of the stamps.
 void load_cut(const Stock& stock, TileArena& arena, std::vector<std::optional<CutTile>>& tiles) {
   if (tiles.size() < arena.size()) tiles.resize(arena.size());
   for (auto& tile : tiles)
@@ -65,15 +65,15 @@ struct Engager::Impl {
   std::int32_t first_id;
   ReadingRule rule;
   std::size_t from = 0;             ///< its first stamp
-  std::span<const Stamp> stamps{};  ///< of the stretch
-  std::vector<Way> way{};           ///< of them
+  std::span<const Stamp> stamps{};  ///< stamps of the stretch
+  std::vector<Way> way{};           ///< one per stamp
   const DeflectionTable* deflections = nullptr;
   std::optional<upright::PatchLanes> lanes{};
   std::optional<ChipReader> reader{};
   TileArena arena{};
-  std::vector<std::optional<CutTile>> tiles{};  ///< as in the arena
+  std::vector<std::optional<CutTile>> tiles{};  ///< by the arena's numbers
   upright::BendMemory memory{};
-  double removed_mm3 = 0;  ///< from tiles that were given back since the last commit
+  double removed_mm3 = 0;  ///< volume removed from tiles that were given back since the last commit
   std::vector<std::int32_t> patches{};
   std::vector<char> glanced_point{};
   std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
@@ -81,7 +81,7 @@ struct Engager::Impl {
   tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::optional<tbb::enumerable_thread_specific<DeflectedCarver>> carvers{};
   bool keeps = false;            ///< since keep(), in this stretch
-  std::vector<KeptTile> kept{};  ///< of which kept_count count
+  std::vector<KeptTile> kept{};  ///< the first kept_count are in use
   std::size_t kept_count = 0;
   std::vector<char> is_kept{};  ///< by tile of the arena
 

@@ -1,6 +1,6 @@
 #pragma once
-// Engagement and carving stamp by stamp for a cutter whose axis points anywhere: what DeflectedEngager and RigidEngager
-// (removal/engagement.h) do for paths that are not upright.
+// Engages and carves stamp by stamp for a tool axis of any direction. DeflectedEngager and RigidEngager
+// (removal/engagement.h) pass paths that are not upright to this class.
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace camber::removal::tilted {
 
-/// As DeflectedEngager, with stamps of any pose. Rigid: rows of the deflections must be 0, and chips are as those of
-/// RigidEngager.
+/// Does what DeflectedEngager does, for stamps of any pose. With ReadingRule::rigid all rows of the deflections must be
+/// 0, and the chips are those that RigidEngager defines.
 class Engager {
  public:
   Engager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
@@ -24,7 +24,7 @@ class Engager {
   double glance(std::size_t k);
   double glance_of(std::span<const DeflectedChipSample> chips) const;
   void cut(std::size_t k);
-  /// From here on go_back() leaves the stock as it is now; until the next call, within one stretch.
+  /// Marks the present stock: go_back() returns to it, within the same stretch.
   void keep();
   void go_back();
   double commit();
@@ -34,7 +34,7 @@ class Engager {
   std::unique_ptr<Impl> impl_;
 };
 
-/// As removal::sweep, with stamps of any pose.
+/// Does what removal::sweep does, for stamps of any pose.
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options);
 
 }  // namespace camber::removal::tilted

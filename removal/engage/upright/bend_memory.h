@@ -1,5 +1,6 @@
 #pragma once
-// The deflections of the stamps that were cut last, for those who read the surfaces that they have left.
+// Keeps the deflections of the stamps that were cut last. Whoever reads a surface that a deflected cutter left needs
+// the deflection of that very stamp.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -9,12 +10,12 @@
 
 namespace camber::removal::upright {
 
-/// Rows of a DeflectionTable by the number of the stamp. The oldest are forgotten beyond a fixed size.
+/// Stores rows of a DeflectionTable by stamp number, in a ring of kMaxBytes; the oldest rows are overwritten.
 class BendMemory {
  public:
   static constexpr std::size_t kMaxBytes = std::size_t{96} << 20;
 
-  /// For rows of this size; the first one that is added is that of stamp `first`.
+  /// Sets the row size, in floats. The first row that is added belongs to stamp `first`.
   void begin(std::size_t row_size, std::size_t first) {
     if (row_size_ == row_size) return;
     first_ = first;
@@ -23,13 +24,13 @@ class BendMemory {
     values_.clear();
     stamps_ = 0;
   }
-  /// Stamps come one after the other.
+  /// Adds the row of the next stamp.
   void add(const float* row) {
     const std::size_t slot = stamps_++ % capacity_;
     if (values_.size() < (slot + 1) * row_size_) values_.resize((slot + 1) * row_size_);
     std::copy_n(row, row_size_, values_.begin() + static_cast<std::ptrdiff_t>(slot * row_size_));
   }
-  /// Rows of the stamps before `from`, one after the other, where those come from elsewhere.
+  /// Adds rows of stamps before `from` that were cut by another process; `rows`: one after the other.
   void add_before(std::size_t from, std::span<const float> rows, std::size_t row_size) {
     if (rows.empty()) return;
     begin(row_size, from - rows.size() / row_size);
@@ -39,7 +40,7 @@ class BendMemory {
     const std::ptrdiff_t k = stamp - static_cast<std::ptrdiff_t>(first_);
     return k >= 0 && static_cast<std::size_t>(k) < stamps_ && static_cast<std::size_t>(k) + capacity_ >= stamps_;
   }
-  /// Where a known stamp's row begins in values().
+  /// Index in values() at which a known stamp's row begins.
   std::size_t at(std::int32_t stamp) const {
     return (static_cast<std::size_t>(stamp) - first_) % capacity_ * row_size_;
   }

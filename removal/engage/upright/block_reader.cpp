@@ -22,7 +22,7 @@ bool is_glanced(std::uint32_t block) {
   return block * kGolden >> kTopBits == 0;
 }
 
-/// A distance to the material stays.
+/// A negative thickness is a distance to the material and is kept.
 float without_thinnest(float chip_mm) { return chip_mm > 0 && chip_mm <= kThinnestChip_mm ? 0.0f : chip_mm; }
 
 }  // namespace
@@ -87,7 +87,7 @@ BlockReader::Point BlockReader::point(const Stamp& stamp, int lane) const {
 }
 
 StampPlace BlockReader::place_of(const TileArena& arena, const Stamp& stamp) const {
-  // What curvature adds to a chip at most.
+  // The most that the curvature of the envelope adds to a chip.
   const double bulge = stamp.feed_per_tooth_mm.squaredNorm() / (2 * std::max(envelope_.shape.corner_radius_mm, 0.1));
   StampPlace place = arena.place_of(stamp, -pitches_ * bulge - 1e-6);
   place.min_cap_mm =
@@ -127,7 +127,7 @@ double BlockReader::glance_of(std::span<const ChipBlock> chips) const {
   return sum / 255;
 }
 
-/// The chips of b.blocks, the first `found` of them.
+/// Returns the chips of the first `found` entries of b.blocks.
 std::span<const ChipBlock> BlockReader::read_found(const TileArena& arena, const Stamp& stamp, const StampPlace& place,
                                                    int found, std::span<const std::int32_t> earlier, Buffers& b) const {
   const CutterShape& shape = envelope_.shape;
@@ -221,7 +221,7 @@ RingPart BlockReader::part_of_ring(const TileArena& arena, const Stamp& stamp, c
                           tips_.view(), first_id_, envelope_.shape);
 }
 
-/// From thickness to depth: the blank's surface counts as one field more, read trilinearly.
+/// Turns thickness into depth: the blank's surface counts as one more field, read trilinearly.
 void BlockReader::thin_by_blank(const TileArena& arena, const ShallowPoints& points, Buffers& b) const {
   std::copy_n(b.thickness.begin(), points.count, b.depth.begin());
   int count = 0;
@@ -276,7 +276,7 @@ float BlockReader::below_blank(const TileArena& arena, const ShallowPoints& poin
   return thinnest;
 }
 
-/// As BlockKernels::thin_points, for any cutter.
+/// Does what BlockKernels::thin_points does, for any cutter profile.
 void BlockReader::thin_general(const TileArena& arena, const Stamp& stamp, const ShallowPoints& points,
                                float* out) const {
   for (int i = 0; i < points.count; ++i) out[i] = thin(arena, points.cell[i], point(stamp, points.lane[i]));
@@ -299,7 +299,7 @@ float BlockReader::thin(const TileArena& arena, int cell, const Point& p) const 
   return thinnest;
 }
 
-/// Thickness of what stamps that are not in the arena yet leave at a point.
+/// Returns the thickness that stamps which are not in the arena yet leave at a point.
 float BlockReader::thickness_over(std::span<const std::int32_t> earlier, const Point& point) const {
   const TipView tips = tips_.view();
   float thinnest = kSolid;

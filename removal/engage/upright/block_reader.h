@@ -1,5 +1,5 @@
 #pragma once
-// Which chips a stamp of the undeflected cutter takes from the tiles as they stand.
+// Reads from the stock's tiles which chips an undeflected upright cutter takes, block of eight points by block.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -14,10 +14,10 @@
 
 namespace camber::removal::upright {
 
-/// For one run of one tool. Definitions of depth and chip thickness: removal/engagement.h.
+/// Reads the chips of one run of one tool. removal/engagement.h defines depth and chip thickness.
 class BlockReader {
  public:
-  /// What one thread needs; may be used for stamp after stamp.
+  /// Working memory of one thread; is used again for every stamp.
   struct Buffers {
     std::vector<std::int32_t> blocks;
     std::vector<std::uint32_t> hit_block, hit_deep;
@@ -32,26 +32,26 @@ class BlockReader {
   };
 
   /// Ids in the stock are first_id + number in `tips`; smaller ids count as blank. Above `top_mm` there is air.
-  /// `pitches`: motion in so many may make a chip, see RigidEngager.
+  /// `pitches`: largest number of tooth passings back to the surface of a chip, see RigidEngager.
   BlockReader(const EnvelopeGrid& envelope, const EnvelopeBlocks& blocks, StampTips tips, std::int32_t first_id,
               double voxel_mm, double top_mm, int pitches);
 
-  /// One stamp more may be named by the stock.
+  /// Adds a stamp that the stock may name from now on.
   void append(const Vec3& tip_mm) { tips_.append(tip_mm); }
   const StampTips& tips() const { return tips_; }
 
-  /// Chips of a stamp. `earlier`: stamps that the arena does not hold yet and that may have cut what this one meets.
+  /// Returns the chips of a stamp. `earlier`: stamps of the batch that are not in the tiles yet and may have cut what
+  /// this one meets.
   std::span<const ChipBlock> read(const TileArena& arena, const Stamp& stamp, std::span<const std::int32_t> earlier,
                                   Buffers& buffers) const;
-  /// The thicknesses of these chips in some blocks of the envelope, always the same ones, summed up: how much material
-  /// there is, at a small part of the cost.
+  /// Returns the sum of the chip thicknesses in an eighth of the blocks, always the same ones (engage/glance.h).
   double glance(const TileArena& arena, const Stamp& stamp, std::span<const std::int32_t> earlier,
                 Buffers& buffers) const;
-  /// The same sum of chips that were read.
+  /// Returns the same sum from chips that were read.
   double glance_of(std::span<const ChipBlock> chips) const;
 
  private:
-  /// Blocks that glance() reads, with bounds of their own.
+  /// The blocks that glance() reads, with their bounds.
   struct GlancedBlocks {
     std::vector<std::int32_t> block;
     std::vector<float> x, y, z, bottom, reach, nx, ny, nz, spread;
@@ -81,7 +81,7 @@ class BlockReader {
   std::int32_t first_id_;
   double voxel_mm_, top_mm_;
   int pitches_;
-  double max_curved_per_mm_ = 0;  ///< of the envelope
+  double max_curved_per_mm_ = 0;  ///< largest curvature of the envelope, 1/mm
   GlancedBlocks glanced_;
 };
 

@@ -32,8 +32,8 @@ ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, st
       kernels_(kernels()),
       wall_half_mm_(wall_half_widths_mm(envelope)) {}
 
-/// How much more than its motion allows a point of stamp k may take, since the stamp before was deflected otherwise
-/// when it left the surface there, at another rotation step.
+/// Returns the chip that a point of stamp k may take beyond its motion bound, mm: the stamp before left the surface
+/// there at another rotation step, with another deflection.
 float ChipReader::reach_mm(std::size_t k) const {
   return stamps_[k].first ? 0.0f
                           : static_cast<float>(deflections_.largest_lateral_mm(static_cast<std::ptrdiff_t>(k) - 1));
@@ -105,7 +105,8 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
   }
 }
 
-/// Deep points make their chips at once; air makes none.
+/// Sorts points by what the field shows: deep points give their chips at once, points in air none, the rest are listed
+/// as shallow.
 void ChipReader::sort_points(const TileArena& arena, std::size_t k, const LaneReading& reading, int first_lane,
                              int count, const StampBend& bend, Buffers& b,
                              std::vector<DeflectedChipSample>& out) const {
@@ -113,8 +114,8 @@ void ChipReader::sort_points(const TileArena& arena, std::size_t k, const LaneRe
   const float air = 0.5f * static_cast<float>(voxel_mm_);
   for (int l = 0; l < count; ++l) {
     if (reading.cell[l] < 0) continue;
-    // The trilinear field is never below the ridge's, but for curvature: so it tells what is in air, and what is
-    // deeper than the chip.
+    // The trilinear field is never below the ridge, apart from curvature. It is therefore enough to find what is in air
+    // and what is deeper than the chip.
     const float field = reading.field[l], cap = reading.cap[l];
     const std::uint32_t p = lanes_.point(first_lane + l), ring = p / static_cast<std::uint32_t>(envelope_.steps);
     const float half = wall_half_mm_[ring];
@@ -146,7 +147,7 @@ void ChipReader::sort_points(const TileArena& arena, std::size_t k, const LaneRe
   }
 }
 
-/// Where the point of a shallow cell lies.
+/// A shallow point and the cell around it.
 struct ChipReader::Place {
   std::size_t tile;
   int in_tile;  ///< the cell's lowest voxel
@@ -164,8 +165,8 @@ struct ChipReader::Place {
   }
 };
 
-/// Takes the part of a ring that lies in material. False where there is none.
-/// Floors that the tool left before count as displaced along its axis by `axial_mm`, as it is now.
+/// Sets the part of a ring that lies in material; returns false where there is none. Floors that the tool left before
+/// count as displaced along its axis by `axial_mm`, the present axial deflection.
 bool ChipReader::place_in_ring(const TileArena& arena, float half_mm, float axial_mm, Shallow& p) const {
   const Place place(arena, p, voxel_mm_);
   std::optional<BlankCell> blank;
@@ -189,8 +190,8 @@ void ChipReader::make_room(Buffers& b) {
   b.row.resize(most);
 }
 
-/// The stamps that a cell's corners name, with their deflections where they are known. Of the others each has the mean
-/// difference between the field and the straight cutter's, weighted as the corners.
+/// Lists the stamps that a cell's corners name, with their deflections where those are known. Each of the others gets
+/// the mean difference between the field and that of the undeflected cutter, weighted by corner.
 void ChipReader::add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& p, Buffers& b) const {
   p.first_pair = b.pairs;
   const Place place(arena, p, voxel_mm_);
@@ -221,7 +222,8 @@ void ChipReader::add_pairs(const TileArena& arena, const Stamp& stamp, Shallow& 
   }
 }
 
-/// How much farther out than the straight cutter's a stamp's surface lies, by the corners that name it.
+/// Returns how much farther out a stamp's surface lies than that of the undeflected cutter, from the corners that name
+/// it.
 float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, const Place& place,
                              const std::array<std::int32_t, 8>& ids, std::int32_t id) const {
   const float* distance = arena.view().distance + p.cell;
@@ -240,7 +242,7 @@ float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, const Pla
 
 void ChipReader::thin_pairs(Buffers& b) const {
   const int count = static_cast<int>(b.pairs);
-  // What fills the last vector: anything, of a row that there is.
+  // The last vector is filled up with any values of an existing row.
   for (std::size_t i = b.pairs; i % PatchLanes::kVector != 0; ++i) b.row[i] = 0;
   const bool any_known = std::find(b.known.begin(), b.known.begin() + count, 1.0f) != b.known.begin() + count;
   const DeflectionRow rows{any_known ? memory_.values() : nullptr,
@@ -257,7 +259,7 @@ void ChipReader::thin_pairs(Buffers& b) const {
       kMinSlope);
 }
 
-/// As Kernels::thin_pairs, for any cutter.
+/// Does what Kernels::thin_pairs does, for any cutter profile.
 void ChipReader::thin_general(Buffers& b) const {
   for (std::size_t i = 0; i < b.pairs; ++i) {
     Vec3 from_tip(b.x[i], b.y[i], b.z[i]);

@@ -1,5 +1,6 @@
 #pragma once
-// Which chips the points of patches take from the tiles: the depth of the stock below them, and what the motion allows.
+// Reads from the stock's tiles which chips the points of a deflected upright cutter take: the depth of the stock below
+// each point, and the bound that the motion sets.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -16,30 +17,30 @@
 
 namespace camber::removal::upright {
 
-/// Reads for one stretch. Definitions of depth and chip thickness: removal/engagement.h.
+/// Reads the chips of one stretch. removal/engagement.h defines depth and chip thickness.
 class ChipReader {
  public:
-  /// A shallow point, whose chip the fields of the stamps around decide.
+  /// A point near the surface: its chip follows from the fields of the stamps around it.
   struct Shallow {
     std::uint32_t point;
     std::uint8_t cut_255;
-    float cap_mm, limit_mm;  ///< what the motion allows; the largest depth that counts
+    float cap_mm, limit_mm;  ///< motion bound; largest depth that counts
     float below_blank_mm;
-    CellShare share;    ///< in its cell
-    std::int32_t cell;  ///< in the arena
-    double up_mm;       ///< the place that is judged lies above the point
+    CellShare share;    ///< position within its cell
+    std::int32_t cell;  ///< number of the cell in the arena
+    double up_mm;       ///< height of the judged place above the point
     std::size_t first_pair;
   };
-  /// What one thread needs; may be used for stamp after stamp.
+  /// Working memory of one thread; is used again for every stamp.
   struct Buffers {
     std::vector<Shallow> shallow;
-    std::size_t pairs = 0;  ///< of the lists below (PairLanes); they are longer
+    std::size_t pairs = 0;  ///< entries in use of the lists below (PairLanes), which are longer
     std::vector<float> x, y, z, nx, ny, nz, guess_x, guess_y, known, farther, thickness, guess_z;
     std::vector<std::int32_t> row;
   };
 
-  /// `all`: the stamps that ids in the stock count from `first_id`; `stamps`: those of the stretch. Rows of
-  /// `deflections` are read as they stand; `memory` has those of stamps that were cut.
+  /// `all`: all stamps; ids in the stock are first_id + index in it. `stamps`: those of the stretch. `deflections` is
+  /// read as it stands at each call; `memory` has the rows of stamps that were cut.
   ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
              const BendMemory& memory);
@@ -53,10 +54,10 @@ class ChipReader {
             std::vector<DeflectedChipSample>& out) const;
 
  private:
-  /// Of the stock below a point.
+  /// Thickness of the stock below a point.
   struct Depth {
     float mm;
-    std::array<float, 3> deeper;  ///< by a deflection in x, y and z
+    std::array<float, 3> deeper;  ///< derivatives by a deflection along x, y and z
   };
   /// A place and the stock around it.
   struct Place;
@@ -85,7 +86,7 @@ class ChipReader {
   const BendMemory& memory_;
   float node_step_mm_;
   const Kernels& kernels_;
-  std::vector<float> wall_half_mm_;  ///< of the rings (removal/engage/upright/level_faces.h)
+  std::vector<float> wall_half_mm_;  ///< half widths of the rings (removal/engage/upright/level_faces.h)
 };
 
 }  // namespace camber::removal::upright

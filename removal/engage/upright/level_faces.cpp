@@ -6,7 +6,7 @@
 namespace camber::removal::upright {
 namespace {
 
-/// Rings whose normal leans by less count as upright, faces whose normal does as level.
+/// Rings whose normal leans by less than this count as upright, faces as level.
 constexpr double kUpright = 0.1;
 
 /// A face this near to the edge of a ring's width, as a share of half the width, is the edge: what an earlier pass at

@@ -1,6 +1,6 @@
 #pragma once
-// Level faces of the stock across a cutter's wall: which share of the width that a sampled point stands for they leave
-// in material.
+// Level faces of the stock (top of the blank, floor of an earlier pass) divide the rings of a cutter's wall. This file
+// finds which part of a ring's width lies in material.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -15,24 +15,24 @@
 
 namespace camber::removal::upright {
 
-/// Half the widths of an envelope's rings that stand upright, mm; 0 for the others.
+/// Returns half the width of each upright ring of an envelope, mm; 0 for rings that are not upright.
 std::vector<float> wall_half_widths_mm(const EnvelopeGrid& envelope);
 
-/// Where a ring of the cutter's wall may be cut in two by level faces.
+/// Place on a ring of the cutter's wall that level faces may divide.
 struct RingPlace {
-  const BlankCell* blank;    ///< at the point; null: solid
-  const std::int32_t* ids;   ///< the same of the stamps that the stock's voxels name
-  Vec3 point_mm, normal;     ///< of the envelope
-  double half_width_mm = 0;  ///< of the ring
+  const BlankCell* blank;    ///< cell of the blank at the point; null: solid
+  const std::int32_t* ids;   ///< stamps that the eight voxels of the stock's cell name
+  Vec3 point_mm, normal;     ///< point of the envelope and its outward normal
+  double half_width_mm = 0;  ///< half the width of the ring
   double axial_mm = 0;       ///< how far along the axis the stamps' floors are displaced
 };
 
 /// Part of the ring's width that lies in material, up and down from its point, mm; nothing where from >= to.
 struct RingPart {
   double from_mm, to_mm;
-  /// In 255ths of the ring's width.
+  /// Returns the part in 255ths of the ring's width.
   std::uint8_t cut_255(double half_width_mm) const;
-  /// By a face at a height, below which the material lies or above it.
+  /// Cuts the part by a face at this height; `below`: the material lies below the face.
   void cut_by(double face_mm, bool below) {
     if (below)
       to_mm = std::min(to_mm, face_mm);
@@ -42,7 +42,8 @@ struct RingPart {
   double middle_mm() const { return (from_mm + to_mm) / 2; }
 };
 
-/// Level faces are the blank's, and the floors cut by the stamps that the cell names: id - first_id of `tips`.
+/// Returns the part of a ring that lies between the level faces around it: those of the blank, and the floors cut by
+/// the stamps that the cell names (index id - first_id in `tips`).
 RingPart part_in_material(const RingPlace& ring, const TipView& tips, std::int32_t first_id, const CutterShape& shape);
 
 }  // namespace camber::removal::upright

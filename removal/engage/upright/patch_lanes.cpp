@@ -37,7 +37,7 @@ PatchLanes::PatchLanes(const EnvelopeGrid& e, const std::vector<double>& node_he
     range_.push_back(range);
     add_bounds(e, patch, voxel_mm, band_mm);
   }
-  // What fills the last vector moves into nothing.
+  // Points that fill up the last vector never take a chip.
   while (normal_x_.size() % kVector != 0) {
     for (auto* v : {&centre_x_, &centre_y_, &centre_z_, &bottom_, &reach_, &normal_x_, &normal_y_, &normal_z_,
                     &lateral_, &curvature_})
@@ -59,7 +59,7 @@ void PatchLanes::add_bounds(const EnvelopeGrid& e, const EnvelopeGrid::Patch& pa
       widest_mm_ = std::max(widest_mm_, (Vec2(e.x[p], e.y[p]) - patch.centre_from_tip.head<2>()).norm());
     }
   }
-  // From the voxel nearest to the centre; what the band does not reach across is never passed over.
+  // Measured from the voxel nearest to the centre; patches wider than the band are never skipped.
   const double reach = patch.radius_mm + 0.87 * voxel_mm;
   reach_.push_back(reach < 0.999 * band_mm ? static_cast<float>(reach) : 1e9f);
   bottom_.push_back(bottom);

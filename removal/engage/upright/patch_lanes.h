@@ -1,5 +1,6 @@
 #pragma once
-// The envelope's points patch by patch, as removal/simd/upright_kernels.h reads them.
+// Arranges the envelope's points patch by patch in the arrays that the vector kernels read
+// (removal/simd/upright_kernels.h).
 #include <cstdint>
 #include <vector>
 
@@ -13,8 +14,8 @@ class PatchLanes {
  public:
   static constexpr int kVector = 8;  ///< patches are filled up to whole vectors with copies of their last point
 
-  /// `node_height_mm`: of the deflection tables that will be read; may be empty.
-  /// `band_mm`, `voxel_mm`: of the stock that is read.
+  /// `node_height_mm`: node heights of the deflection tables that will be read; may be empty.
+  /// `band_mm`, `voxel_mm`: narrow band and voxel of the stock that is read.
   PatchLanes(const EnvelopeGrid& envelope, const std::vector<double>& node_height_mm, double voxel_mm, double band_mm);
 
   struct Range {
@@ -23,9 +24,9 @@ class PatchLanes {
   Range range(std::uint32_t patch) const { return range_[patch]; }
   std::uint32_t point(int lane) const { return point_[static_cast<std::size_t>(lane)]; }
   PointLanes view() const;
-  /// The patches, filled up to whole vectors with some that are never found.
+  /// Bounds of the patches, filled up to whole vectors with patches that are never found.
   BlockBounds bounds() const;
-  /// How far seen from above a point of a patch lies from the patch's centre, at most.
+  /// Largest horizontal distance of a point from the centre of its patch.
   double widest_mm() const { return widest_mm_; }
 
  private:
@@ -33,10 +34,10 @@ class PatchLanes {
 
   std::vector<Range> range_;
   double widest_mm_ = 0;
-  // Of the patches:
+  // One entry per patch:
   std::vector<float> centre_x_, centre_y_, centre_z_, bottom_, reach_;
   std::vector<float> normal_x_, normal_y_, normal_z_, normal_spread_, lateral_, curvature_;
-  // Of the points:
+  // One entry per point (lane):
   std::vector<std::uint32_t> point_;
   std::vector<float> x_, y_, z_, nx_, ny_, nz_, cos_phi_, sin_phi_, k1_, k2_, sine_, cosine_, per_radius_,
       upper_fraction_;

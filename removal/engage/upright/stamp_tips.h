@@ -1,5 +1,6 @@
 #pragma once
-// Where the stamps of a run stand, by number: of a whole run, or of one that grows while it is cut.
+// Gives the tip of a stamp by its number, for a whole run or for one that grows while it is cut, in twelve bytes a
+// stamp.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 namespace camber::removal::upright {
 
-/// Tips as the stamps have them, or from whole steps of a box.
+/// Reads tips from the stamps themselves, or from integer steps within a box.
 class TipView {
  public:
   TipView(std::span<const Stamp> stamps) : stamps_(stamps.data()) {}
@@ -33,19 +34,19 @@ class TipView {
   double step_mm_ = 0;
 };
 
-/// Tips in steps that are a billionth of their range, twelve bytes each.
+/// Stores tips as integer steps, a billionth of their range each; twelve bytes per tip.
 class StampTips {
  public:
-  /// Of a whole run, which must outlive the object: view() has the tips as they are. Of a known_run() its own are used.
+  /// For a whole run, which must outlive the object: view() has the exact tips. A known_run() brings its own.
   explicit StampTips(std::span<const Stamp> stamps);
-  /// Of a run that grows, with tips in this box: view() has them to a billionth of it. Room for `expected` is set
-  /// aside, so that none of them takes longer than another; memory is used as they come.
+  /// For a run that grows, with tips in this box: view() has them to a billionth of the box. Space for `expected` tips
+  /// is reserved, so that no append() takes longer than another.
   StampTips(const Vec3& min_mm, const Vec3& max_mm, std::size_t expected);
 
   void append(const Vec3& tip_mm);
   std::size_t size() const { return tip_[0].size(); }
   TipView view() const;
-  /// For the kernels; `own_mm`: of the stamp that reads.
+  /// Tips as the kernels take them; `own_mm`: tip of the stamp that reads.
   FixedTips fixed(const Vec3& own_mm, std::int32_t first_id) const;
 
  private:
@@ -55,8 +56,8 @@ class StampTips {
   std::span<const Stamp> stamps_;
   Vec3 min_mm_ = Vec3::Zero();
   float step_mm_ = 1;
-  std::shared_ptr<const TipSteps> known_;         ///< of a known run
-  std::array<std::vector<std::int32_t>, 3> tip_;  ///< of any other
+  std::shared_ptr<const TipSteps> known_;         ///< tips of a known run
+  std::array<std::vector<std::int32_t>, 3> tip_;  ///< tips of any other run
 };
 
 }  // namespace camber::removal::upright
