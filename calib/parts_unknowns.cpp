@@ -35,6 +35,7 @@ bool held_out(const Job& job, const std::string& part, const std::vector<std::st
 
 std::vector<bool> jobs_where(const std::vector<Job>& jobs, const std::function<bool(const Job&)>& test) {
   std::vector<bool> out;
+  out.reserve(jobs.size());
   for (const Job& job : jobs) out.push_back(test(job));
   return out;
 }
