@@ -139,6 +139,7 @@ std::optional<std::vector<double>> parse_speeds(const std::string& text) {
   if (n.size() != 3 || n[0] <= 0 || n[1] <= n[0] || n[2] < 2 || n[2] > kMostSpeeds || n[2] != std::floor(n[2]))
     return std::nullopt;
   std::vector<double> speeds;
+  speeds.reserve(static_cast<std::size_t>(n[2]));
   for (int i = 0; i < n[2]; ++i) speeds.push_back(n[0] + (n[1] - n[0]) * i / (n[2] - 1));
   return speeds;
 }
