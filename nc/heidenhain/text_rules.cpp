@@ -186,18 +186,11 @@ class KlartextRules : public TextRules {
 
   /// The CC before the run, unless a new one comes before what may rely on it.
   std::vector<std::string> lines_behind(std::uint32_t first, std::uint32_t last) const override {
-    const Statement* centre = nullptr;
-    for (const Statement& s : tree_.statements) {
-      if (s.block < first && s.kind == Kind::centre) centre = &s;
-      if (s.block <= last) continue;
-      if (s.kind == Kind::centre || s.kind == Kind::begin_program) break;
-      const bool relies = s.kind == Kind::circle || s.kind == Kind::polar_circle || s.kind == Kind::polar_line ||
-                          s.kind == Kind::polar_tangent_arc || s.kind == Kind::call_label ||
-                          s.kind == Kind::call_program || s.kind == Kind::label || s.kind == Kind::approach ||
-                          s.kind == Kind::departure;
-      if (relies && centre) return {centre_text(*centre)};
-      if (relies) break;
-    }
+    const auto behind = [](std::uint32_t block, const Statement* s) { return block < s->block; };
+    const auto next = std::upper_bound(pole_statements_.begin(), pole_statements_.end(), last, behind);
+    if (next == pole_statements_.end() || (*next)->kind == Kind::centre) return {};
+    for (auto at = next; at != pole_statements_.begin();)
+      if (const Statement& s = **--at; s.kind == Kind::centre && s.block < first) return {centre_text(s)};
     return {};
   }
 
@@ -273,10 +266,28 @@ class KlartextRules : public TextRules {
     numbers_ = numbered > bare;
   }
 
+  static bool may_rely_on_pole(Kind kind) {
+    switch (kind) {
+      case Kind::circle:
+      case Kind::polar_circle:
+      case Kind::polar_line:
+      case Kind::polar_tangent_arc:
+      case Kind::call_label:
+      case Kind::call_program:
+      case Kind::label:
+      case Kind::approach:
+      case Kind::departure:
+        return true;
+      default:
+        return false;
+    }
+  }
+
   /// The CC that each circle relies on, by the order of the text; kNone where a call or a label stands between.
   void find_centres() {
     std::uint32_t centre = kNone;
     for (const Statement& s : tree_.statements) {
+      if (s.kind == Kind::centre || may_rely_on_pole(s.kind)) pole_statements_.push_back(&s);
       if (s.kind == Kind::centre)
         centre = s.lines == 1 ? s.block : kNone;
       else if (s.kind == Kind::call_label || s.kind == Kind::call_program || s.kind == Kind::label)
@@ -340,6 +351,7 @@ class KlartextRules : public TextRules {
   const Tree& tree_;
   std::vector<std::uint32_t> statement_of_;           ///< by block; kNone: a line that continues another
   std::map<std::uint32_t, std::uint32_t> centre_of_;  ///< by block: the block of its CC
+  std::vector<const Statement*> pole_statements_;     ///< CC and what may rely on one, in the order of the text
   std::uint32_t moved_ = kNone;                       ///< a CC that the emitted text has replaced by another since
   bool plus_ = true, comma_ = false, numbers_ = true;
   bool trailing_point_ = false;  ///< X-7.

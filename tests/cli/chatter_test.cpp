@@ -15,7 +15,7 @@ using tests::file_text;
 using tests::run_camber;
 using tests::TempFolder;
 
-const std::string kChatterSample = CAMBER_SOURCE_DIR "/samples/23-chatter/";
+const std::string kChatterSample = CAMBER_SOURCE_DIR "/samples/24-chatter/";
 
 TEST(FitModesCommand, WritesModesThatAJobTakes) {
   const TempFolder folder;

@@ -45,7 +45,7 @@ TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
   const std::string samples = CAMBER_SOURCE_DIR "/samples/";
   for (const char* sample :
        {"01-finishing", "03-force-fit", "10-raster", "11-feed-by-load", "12-five-axis", "14-copy-milling", "15-plan",
-        "16-die-cavity", "17-study", "23-chatter", "23-measured-parts", "machines", "case_base.toml"})
+        "16-die-cavity", "17-study", "24-chatter", "23-measured-parts", "machines", "case_base.toml"})
     std::filesystem::copy(samples + sample, folder / sample, std::filesystem::copy_options::recursive);
   const auto names = subcommands(folder);
   EXPECT_GE(names.size(), 11u);
@@ -66,8 +66,8 @@ TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
                                          : name == "plan"      ? "15-plan"
                                          : name == "posture"   ? "16-die-cavity"
                                          : name == "study"     ? "17-study"
-                                         : name == "lobes"     ? "23-chatter"
-                                         : name == "fit-modes" ? "23-chatter"
+                                         : name == "lobes"     ? "24-chatter"
+                                         : name == "fit-modes" ? "24-chatter"
                                          : part                ? "10-raster"
                                                                : "01-finishing");
       const std::string command = "export HOME='" + folder.path() +
