@@ -288,14 +288,16 @@ TEST(SetUp, CutAboveTheOverhang) {
 
 TEST(SetUp, AnAssumedOverhangRefusesNothing) {
   const TempFolder folder;
-  write(folder, {.job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 1.5\nassumed = [\"overhang_mm\"]")});
+  write(folder, {.program = replaced(kSlot, "G1 X12 F900", "G1 X6 F900\nX12"),
+                 .job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 1.5\nassumed = [\"overhang_mm\"]")});
   const CamberRun run = run_camber(folder, "check --job job.toml");
   EXPECT_EQ(run.status, 0);
   EXPECT_NE(run.err.find("p.nc:6:1: warning: T1 meets material 2.0 mm above its tip, but overhang_mm = 1.5, which is "
                          "assumed; the length that the tool has was expected, or a stock that is cut so far "
-                         "[cut-above-overhang]\n    G1 X12 F900\n    ^\n"),
+                         "[cut-above-overhang]\n    G1 X6 F900\n    ^\n"),
             std::string::npos)
       << run.err;
+  EXPECT_EQ(run.err.find("[cut-above-overhang]"), run.err.rfind("[cut-above-overhang]")) << run.err;
 }
 
 TEST(SetUp, SecondCutMayGoDeeperThanTheFlutes) {

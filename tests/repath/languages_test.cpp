@@ -1,4 +1,5 @@
 // Runs written anew in the words of Heidenhain and Siemens controls.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include "repath/resegment.h"
 #include "tests/nc/nc_text.h"
 #include "tests/support/path_distance.h"
+#include "tests/support/temp_folder.h"
 
 namespace camber::repath {
 namespace {
@@ -55,6 +57,29 @@ TEST(CompressKlartext, APoleSetBeforeTheRunIsSetAgainBehindIt) {
                 "8 C X-14.161 Y+19.093 DR-\n9 END PGM A MM\n");
 }
 
+/// Arcs that follow each other: each is two blocks, and a kink is at the block of the move that begins there.
+TEST(CompressKlartext, TheBlockOfAKinkIsThatOfItsMove) {
+  int kinks = 0;
+  for (int k = 1; k <= 12; ++k) {
+    std::string text = "BEGIN PGM A MM\nTOOL CALL 1 Z S5000\nL X+0 Y+0 Z+0 R0 FMAX M3\nL Z-1 F500\n";
+    for (int i = 1; i <= 120; ++i)  // a wave whose curvature changes all along
+      text += fmt::format("L X{:+.4f} Y{:+.4f}\n", 0.25 * i, (1 + 0.3 * k) * std::sin(0.25 * i / 3));
+    const nc::Read before = nc::read_clean(text + "L Z+5 FMAX\nEND PGM A MM\n");
+    CompressOptions options;
+    options.tolerance_mm = 0.02;
+    const Compression out = compress(before.program, before.moves, options);
+    if (out.max_kink_rad < 1e-3) continue;
+    ++kinks;
+    const nc::Read after = nc::read_clean(out.text);
+    const auto& moves = after.moves.moves;
+    const auto at = std::ranges::find(moves, out.max_kink_block, &nc::Move::block);
+    ASSERT_TRUE(at != moves.end() && at != moves.begin()) << out.max_kink_block << "\n" << out.text;
+    const double dot = direction_at(after.moves, *(at - 1), 1).dot(direction_at(after.moves, *at, 0));
+    EXPECT_NEAR(std::acos(std::clamp(dot, -1.0, 1.0)), out.max_kink_rad, 0.05 * out.max_kink_rad + 2e-4) << out.text;
+  }
+  EXPECT_GT(kinks, 3);
+}
+
 TEST(CompressKlartext, MFunctionsCommentsAndSkippedBlocksEndARun) {
   for (const char* middle :
        {"L M8\n", "; note\n", "/L X+10 Y+0\n", "LBL 3\n", "L IX+0.5\n", "CYCL DEF 32.0 TOLERANCE\n"}) {
@@ -77,9 +102,21 @@ TEST(CompressSiemens, IsWrittenWithCodesThatHold) {
   EXPECT_EQ(read_and_compressed(head + lines + "N650 X0 Y0 ; off\nN660 M30\n"),
             "%_N_A_MPF\nN10 G17 G71 G90\nN20 T1 M6 D1\nN30 G0 X10 Y0 Z0 S5000 M3\nN40 G1 Z-1.000 F500\n"
             "N640 G3 X-4.161 Y9.093 I-10.000 J0.000\nG1\nN650 X0 Y0 ; off\nN660 M30\n");
-  const std::string jumps = head + lines + "N650 R1=R1+1\nN660 IF R1<3 GOTOB N60\nN670 M30\n";
-  const nc::Read read = nc::read_text(jumps);
-  EXPECT_EQ(compress(read.program, read.moves, {}).text, jumps);  // N60 is a target
+}
+
+TEST(CompressSiemens, BlocksThatAJumpMayGoToStay) {
+  std::string lines;
+  for (int i = 1; i <= 60; ++i)
+    lines += fmt::format("N{} X{:.3f} Y{:.3f}\n", 40 + 10 * i, 10 * std::cos(i / 30.0), 10 * std::sin(i / 30.0));
+  for (const char* jump : {"N25 IF R1==5 GOTOF N300\n", "N25 CASE R1 OF 5 GOTOF N300\n"}) {
+    const std::string text = "%_N_A_MPF\nN10 G17 G71 G90\nN20 T1 M6 D1 R1=0\n" + std::string(jump) +
+                             "N30 G0 X10 Y0 Z0 S5000 M3\nN40 G1 Z-1 F500\n" + lines + "N650 M30\n";
+    const nc::Read read = nc::read_text(text);
+    EXPECT_GT(read.moves.moves.size(), 60u) << jump;
+    EXPECT_EQ(compress(read.program, read.moves, {}).text, text);
+    const nc::Read without = nc::read_text(tests::replaced(text, jump, ""));
+    EXPECT_LT(compress(without.program, without.moves, {}).text.size(), 400u);
+  }
 }
 
 TEST(ResegmentKlartext, LongerBlocksHaveTheirFeed) {
