@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kAheadMm = 1.5;
 constexpr double kArcStepMm = 0.05;
+constexpr double kSameDistanceMm = 1e-9;
 
 bool cuts(const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; }
 
@@ -54,7 +55,8 @@ class Follower {
  public:
   explicit Follower(const MeantPath& meant) : first_(meant.first_), points_(meant.points_), along_(meant.along_) {}
 
-  /// `chain`: from 1, never less than the time before.
+  /// `chain`: from 1, never less than the time before. Of two segments as near as each other the later one counts:
+  /// where a path goes back the way it came, a place whose lag cuts the turn would else stay on the way out.
   double distance_mm(const Vec3& p, std::uint32_t chain) {
     if (chain >= first_.size()) return 0;
     const std::size_t end = first_[chain];
@@ -63,7 +65,7 @@ class Follower {
     Foot best = foot(p, at_);
     const double from = best.along_mm;
     for (std::size_t k = at_ + 1; k + 1 < end && along_[k] - from < kAheadMm + best.distance_mm; ++k)
-      if (const Foot f = foot(p, k); f.distance_mm < best.distance_mm) best = f, at_ = k;
+      if (const Foot f = foot(p, k); f.distance_mm < best.distance_mm + kSameDistanceMm) best = f, at_ = k;
     return best.distance_mm;
   }
 
