@@ -27,16 +27,19 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using machine::Job;
 
-constexpr double kStep = 0.2;            // of a logarithm, for slopes: large against the noise of a grid
-constexpr double kLeastStep = 0.05;      // of a logarithm, that corrects slopes: less is the noise of a grid
+constexpr double kStep = 0.2;        // of a logarithm, for slopes: large against the noise of a grid
+constexpr double kLeastStep = 0.05;  // of a logarithm, that corrects slopes: less is the noise of a grid
+constexpr double kNear = 0.05;       // of a logarithm, from where slopes were found
+constexpr int kSlopeRounds = 3;
 constexpr double kLongest = 0.7;         // of a logarithm, a round
 constexpr double kDetermined = 0.5;      // greatest standard error of a logarithm
 constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day
 constexpr double kNoise_mm = 0.002;      // of a measured size, before anything is known of it
 constexpr double kLeastNoise_mm = 0.0002;
-constexpr double kHuber = 2.5;    // standard deviations: normal noise stays least squares
-constexpr double kAtRest = 0.05;  // of a standard error
-constexpr double kAlike = 0.9;    // cosine between two columns that cannot be told apart
+constexpr double kHuber = 2.5;                // standard deviations: normal noise stays least squares
+constexpr double kBoundedVariance = 0.97756;  // of a standard normal variable bounded to +- kHuber
+constexpr double kAtRest = 0.05;              // of a standard error
+constexpr double kAlike = 0.9;                // cosine between two columns that cannot be told apart
 
 /// Robust linear least squares by Ceres: residual (row . x - b) / sigma.
 class LinearRow final : public ceres::CostFunction {
@@ -102,7 +105,7 @@ double exponent_of(UnknownKind kind) {
 
 /// Slope at x of a size that changes by `change` over the step.
 double slope_from(double change, UnknownKind kind) {
-  if (kind == UnknownKind::gain_ratio) return change / kStep;
+  if (kind == UnknownKind::gain_ratio) return change / kStep;  // half a step to either side
   const double p = exponent_of(kind);
   return p * change / std::expm1(p * kStep);
 }
@@ -134,7 +137,7 @@ class Fit {
     choose(kNoise_mm);
     do {
       iterate();
-      if (far_from_slopes()) {  // they were those of another place
+      for (int k = 0; k < kSlopeRounds && far_from_slopes(); ++k) {  // they were those of another place
         find_slopes();
         iterate();
       }
@@ -197,11 +200,11 @@ class Fit {
     return std::ranges::any_of(fitted_, [&](std::size_t i) { return rows_[i].job == j; });
   }
 
-  /// Whether a scale has moved by more than the step of its slope.
+  /// Whether a scale has moved since slopes were found: standard errors are theirs.
   bool far_from_slopes() const {
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
       if (!unknowns_[k].adds() &&
-          std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) > kStep)
+          std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) > kNear)
         return true;
     return false;
   }
@@ -229,13 +232,17 @@ class Fit {
       if (unknowns_[k].adds() || !unknowns_[k].of_job[j] || of_motion(unknowns_[k].kind) != motion) continue;
       if (!here) here = predict_coarsely(j, x_, motion);
       const auto column = static_cast<Eigen::Index>(k);
+      // One axis lags more, the other less: the change has no sign that a power could follow, so it is taken centrally.
+      const bool central = unknowns_[k].kind == UnknownKind::gain_ratio;
       VectorXd x = x_;
-      x[column] += kStep;
+      x[column] += central ? kStep / 2 : kStep;
       const Sizes there = predict_coarsely(j, x, motion);
+      x[column] -= kStep;
+      const Sizes back = central ? predict_coarsely(j, x, motion) : *here;
       for (std::size_t f = 0; f < there.size(); ++f)
-        if (there[f] && (*here)[f])
+        if (there[f] && back[f])
           slope_[j](static_cast<Eigen::Index>(f), column) =
-              slope_from(there[f]->size_mm - (*here)[f]->size_mm, unknowns_[k].kind);
+              slope_from(there[f]->size_mm - back[f]->size_mm, unknowns_[k].kind);
     }
   }
 
@@ -353,7 +360,7 @@ class Fit {
     const double dof = std::max<double>(1, static_cast<double>(r.size() - static_cast<Eigen::Index>(active().size())));
     const double bound = std::max(
         kLeastNoise_mm, kHuber * 1.4826 * sizes[sizes.size() / 2] * std::sqrt(static_cast<double>(r.size()) / dof));
-    return std::max(kLeastNoise_mm, std::sqrt(r.cwiseAbs().cwiseMin(bound).squaredNorm() / dof));
+    return std::max(kLeastNoise_mm, std::sqrt(r.cwiseAbs().cwiseMin(bound).squaredNorm() / (kBoundedVariance * dof)));
   }
 
   void iterate() {
