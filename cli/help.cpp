@@ -20,7 +20,7 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "camber time finish.nc --machine machine.toml --report time.html\n"
      "  camber time finish.nc --machine machine.toml --sweep axis.x.acceleration_mm_per_s2=300:1200:4"},
     {"fit-feed", "camber fit-feed --program trace_program.nc --trace trace.csv --machine machine.toml -o fitted.toml"},
-    {"fit-parts", "camber fit-parts plate_01.toml plate_03.toml -o fitted"},
+    {"fit-parts", "camber fit-parts plate_01.toml plate_07.toml -o fitted"},
     {"protocol",
      "camber protocol --machine machine.toml -o programs\n  camber protocol --machine machine.toml --part -o "
      "test_piece"},
