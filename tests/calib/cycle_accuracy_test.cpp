@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "test_paths.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/nc_program.h"
 #include "tests/support/test_data.h"
 
@@ -30,6 +31,8 @@ TEST(YanShirase, A11_TimeWithinThreePerCentOfTheMachine) {
     ASSERT_TRUE(a.has_lines) << name;
     EXPECT_GT(a.total.measured_s, 10) << name;
     EXPECT_LT(std::abs(a.total.error_percent()), 3) << name;
+    tests::record_figure(std::string("total time, ") + name, a.total.error_percent(), 3);
+    tests::record_figure(std::string("cutting time, ") + name, a.cutting.error_percent(), 1);
     EXPECT_LT(std::abs(a.cutting.error_percent()), 1) << name;
     EXPECT_LT(std::abs(a.positioning.error_percent()), 3) << name;
     EXPECT_GT(a.parts.size(), 3u) << name;

@@ -3,9 +3,11 @@
 
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "deflection/beam.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/cutting.h"
 #include "tests/support/test_data.h"
 
@@ -37,8 +39,9 @@ void expect_modes_of(const std::string& beam, const std::vector<BeamSection>& se
   const auto modes = beam_modes(sections, root, 3);
   ASSERT_EQ(modes.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(modes[i].frequency_hz, expected[i], kFrequency * expected[i]) << beam << " f" << i + 1;
-    EXPECT_NEAR(modes[i].tip_stiffness_N_per_mm, 1000 * expected[3 + i], 1000 * kStiffness * expected[3 + i]) << beam;
+    const std::string of = fmt::format(", {}, mode {}", beam, i + 1);
+    tests::expect_figure("frequency" + of, modes[i].frequency_hz, expected[i], kFrequency);
+    tests::expect_figure("modal stiffness" + of, modes[i].tip_stiffness_N_per_mm, 1000 * expected[3 + i], kStiffness);
   }
 }
 

@@ -1,7 +1,9 @@
 // Lobes against tables that were worked out without Camber (tests/data/README.md), closed forms and published figures.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "dynamics/semi_discretisation.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/lobe_case.h"
 
 namespace camber::dynamics {
@@ -22,17 +24,19 @@ bool known_exception(const LobeCase& c, double rpm) {
 
 void expect_zero_order_as_in_table(const LobeCase& c) {
   const ZeroOrderLobes lobes(c.modes, c.cut);
+  tests::LargestFigure depths("critical depth, case " + c.name, kDepth);
   for (std::size_t i = 0; i < c.table.at("speed_rpm").size(); ++i) {
     const double rpm = c.table.at("speed_rpm")[i], depth = c.table.at("zero_order_mm")[i];
     if (std::isnan(depth)) continue;
     const CriticalDepth found = lobes.at(rpm);
-    EXPECT_NEAR(found.depth_mm, depth, kDepth * depth) << c.name << " " << rpm;
+    depths.expect(found.depth_mm, depth, fmt::format("{} rpm", rpm));
     const double hz = c.table.at("zero_order_chatter_Hz")[i];
     EXPECT_NEAR(found.chatter_hz, hz, kHz * hz) << c.name << " " << rpm;
   }
 }
 
 void expect_semi_discretisation_as_in_table(const LobeCase& c, std::size_t every) {
+  tests::LargestFigure depths("critical depth, case " + c.name, kDepth);
   for (std::size_t i = 0; i < c.table.at("speed_rpm").size(); i += every) {
     const double rpm = c.table.at("speed_rpm")[i], depth = c.table.at("semi_discretisation_mm")[i];
     if (known_exception(c, rpm)) continue;
@@ -41,7 +45,7 @@ void expect_semi_discretisation_as_in_table(const LobeCase& c, std::size_t every
       EXPECT_EQ(found.border, StabilityBorder::none) << c.name << " " << rpm;
       continue;
     }
-    EXPECT_NEAR(found.critical.depth_mm, depth, kDepth * depth) << c.name << " " << rpm;
+    depths.expect(found.critical.depth_mm, depth, fmt::format("{} rpm", rpm));
     EXPECT_NEAR(std::abs(found.multiplier), 1, 0.01) << c.name << " " << rpm;
   }
 }

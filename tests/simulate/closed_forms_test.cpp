@@ -4,17 +4,22 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/units.h"
 #include "removal/engagement.h"
 #include "removal/form_error.h"
 #include "simulate/cut.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/cutting.h"
 #include "tests/support/engage_all.h"
 
 namespace camber::simulate {
 namespace {
+
+using tests::expect_figure;
+using tests::LargestFigure;
 
 using testing::add_row;
 using testing::engage_all;
@@ -70,6 +75,7 @@ Cut row(const Shoulder& s, double depth) {
 }
 
 TEST(ClosedForms, EngagementAnglesOfShouldersAndSlots) {
+  LargestFigure angles("engagement angle", kOnePercent);
   const auto tool = make_tool(machine::ToolType::flat, 2 * kRadius, 2, 0);
   for (const bool up : {true, false})
     for (const double radial : {0.5, 2.0, 5.0, 8.0, 10.0}) {
@@ -90,11 +96,12 @@ TEST(ClosedForms, EngagementAnglesOfShouldersAndSlots) {
       const double aside = (up ? 0.003 : -0.003) / (kRadius * std::max(0.1, std::cos(s.up ? s.from() : s.to())));
       const double expected =
           radial < 2 * kRadius ? s.to() - s.from() - aside : kPi + 2 * std::asin(kFeed / 2 / kRadius);
-      EXPECT_NEAR(angle, expected, kOnePercent * expected) << radial << (up ? " up" : " down");
+      angles.expect(angle, expected, fmt::format("{} {}", radial, up ? "up" : "down"));
     }
 }
 
 TEST(ClosedForms, MeanForcesAtAnyImmersionWhateverTheHelix) {
+  LargestFigure forces("mean force", kOnePercent);
   constexpr double kDepth = 2;
   constexpr int kNodes = 20000;
   for (const bool up : {true, false})
@@ -117,14 +124,14 @@ TEST(ClosedForms, MeanForcesAtAnyImmersionWhateverTheHelix) {
         constexpr std::size_t kOver = 20;
         for (std::size_t k = cut.stamps.size() - kOver; k < cut.stamps.size(); ++k)
           mean += result.loads[k].force_mean_N / kOver;
-        EXPECT_LT((mean - closed).norm(), kOnePercent * closed.norm())
-            << radial << (up ? " up " : " down ") << helix << ": " << mean.transpose() << " / " << closed.transpose();
+        forces.expect_vector(mean, closed, fmt::format("{} {} helix {}", radial, up ? "up" : "down", helix));
       }
     }
 }
 
 /// Slots in a layer on a floor that an earlier pass has made: the force grows with the layer, not with whole rings.
 TEST(ClosedForms, MeanForcesInALayerOfAnyThickness) {
+  LargestFigure forces("mean force", kOnePercent);
   constexpr int kNodes = 20000;
   const Shoulder slot{2 * kRadius, true};
   Vec3 closed = Vec3::Zero();
@@ -150,8 +157,7 @@ TEST(ClosedForms, MeanForcesInALayerOfAnyThickness) {
       Vec3 mean = Vec3::Zero();
       constexpr std::size_t kOver = 6;
       for (std::size_t k = stamps.size() - kOver; k < stamps.size(); ++k) mean += result.loads[k].force_mean_N / kOver;
-      EXPECT_LT((mean - layer * closed).norm(), kOnePercent * layer * closed.norm())
-          << layer << ": " << mean.transpose() << " / " << layer * closed.transpose();
+      forces.expect_vector(mean, Vec3(layer * closed), fmt::format("{} mm", layer));
     }
 }
 
@@ -191,7 +197,7 @@ TEST(ClosedForms, BallPassTakesItsAreaAndLeavesItsCusps) {
     area += std::max(0.0, before - floor(0)) * 6 / kSlices;
   }
   EXPECT_NEAR(area, kRow * kDepth, 0.05 * area);  // less the cusps' own
-  EXPECT_NEAR(chips / count / kStep, area, kOnePercent * area);
+  expect_figure("area of the chips", chips / count / kStep, area, kOnePercent);
 
   double lowest = 1, highest = -1;
   for (const auto& p : map.take())
@@ -200,10 +206,11 @@ TEST(ClosedForms, BallPassTakesItsAreaAndLeavesItsCusps) {
       highest = std::max(highest, p.place_mm.z());
     }
   const double cusp = kBall - std::sqrt(kBall * kBall - kRow * kRow / 4);
-  EXPECT_NEAR(highest - lowest, cusp, kOnePercent * cusp);
+  expect_figure("height of the cusps", highest - lowest, cusp, kOnePercent);
 }
 
 TEST(ClosedForms, DeflectionAsAnEdgePassesTheWall) {
+  LargestFigure deflections("deflection", kOnePercent);
   // A stiff bar on a spring: at the instant at which the edge at height z stands at the wall, every edge element of all
   // teeth stands at the wall's angle plus its lag; delta = F / k.
   constexpr double kDepth = 5, kRoot = 8000;
@@ -244,8 +251,8 @@ TEST(ClosedForms, DeflectionAsAnEdgePassesTheWall) {
       ASSERT_GT(largest, 0.001);
       for (std::size_t i = 0; i < heights.size(); ++i) {
         const Vec2 got = result.loads[stamp_of(i)].contact_deflection_mm.head<2>(), want = closed(heights[i], past);
-        EXPECT_LT((got - want).norm(), kOnePercent * largest)
-            << helix << (up ? " up " : " down ") << heights[i] << ": " << got.transpose() << " / " << want.transpose();
+        deflections.expect_vector(got, want, fmt::format("helix {} {} at {} mm", helix, up ? "up" : "down", heights[i]),
+                                  largest);
       }
     }
 }

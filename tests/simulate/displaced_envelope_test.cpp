@@ -2,6 +2,7 @@
 // the surface. bench/accuracy has more of them.
 #include <gtest/gtest.h>
 
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/finished_wall.h"
 #include "tests/support/inclined_plane.h"
 
@@ -12,16 +13,19 @@ using testing::CutFigures;
 using testing::FinishedWall;
 using testing::InclinedPlane;
 using testing::WallFigures;
+using tests::expect_figure;
+using tests::expect_vector_figure;
+using tests::LargestFigure;
 
 constexpr double kAgreement = 0.02, kGridAgreement = 0.01;
 
 void expect_near(const CutFigures& got, const CutFigures& want) {
-  EXPECT_NEAR(got.lateral_max_N, want.lateral_max_N, kAgreement * want.lateral_max_N);
-  EXPECT_LT((got.mean_N - want.mean_N).norm(), kAgreement * want.mean_N.norm());
-  EXPECT_NEAR(got.median_um, want.median_um, kAgreement * want.median_um);
-  EXPECT_NEAR(got.p5_um, want.p5_um, kAgreement * want.p95_um);
-  EXPECT_NEAR(got.p95_um, want.p95_um, kAgreement * want.p95_um);
-  EXPECT_NEAR(got.error_mean_um, want.error_mean_um, kAgreement * want.error_mean_um);
+  expect_figure("peak force", got.lateral_max_N, want.lateral_max_N, kAgreement);
+  expect_vector_figure("mean force", got.mean_N, want.mean_N, kAgreement);
+  expect_figure("form error, median", got.median_um, want.median_um, kAgreement);
+  expect_figure("form error, 5th percentile", got.p5_um, want.p5_um, kAgreement, want.p95_um);
+  expect_figure("form error, 95th percentile", got.p95_um, want.p95_um, kAgreement);
+  expect_figure("form error, mean", got.error_mean_um, want.error_mean_um, kAgreement);
 }
 
 TEST(DisplacedEnvelopeSlow, AForceThatRisesWithinAStepLeavesItsMark) {
@@ -81,14 +85,16 @@ TEST(DisplacedEnvelopeSlow, FlatterPlaneWithRowsDownwardsAgrees) {
 
 void expect_wall(const FinishedWall& w, double agreement = kAgreement) {
   const WallFigures want = drawn_figures(w), got = camber_figures(w);
-  EXPECT_NEAR(got.lateral_max_N, want.lateral_max_N, kAgreement * want.lateral_max_N);
-  EXPECT_LT((got.mean_N - want.mean_N).norm(), kAgreement * want.mean_N.norm());
+  const std::string side = w.up ? ", up" : ", down";
+  expect_figure("peak force" + side, got.lateral_max_N, want.lateral_max_N, kAgreement);
+  expect_vector_figure("mean force" + side, got.mean_N, want.mean_N, kAgreement);
   double largest = 0;
   for (const double e : want.error_um) largest = std::max(largest, std::abs(e));
   ASSERT_GT(largest, 1);
   ASSERT_EQ(got.error_um.size(), want.error_um.size());
+  LargestFigure slices("form error of a slice" + side, agreement);
   for (std::size_t i = 0; i < want.error_um.size(); ++i)
-    EXPECT_NEAR(got.error_um[i], want.error_um[i], agreement * largest) << i;
+    slices.expect(got.error_um[i], want.error_um[i], std::to_string(i), largest);
 }
 
 TEST(DisplacedEnvelope, HelicalMillAlongAWallAgreesUpMilling) { expect_wall({.up = true}); }
@@ -103,7 +109,7 @@ TEST(DisplacedEnvelope, VerySteepHelixAlongAWallAgrees) {
   for (const bool up : {true, false}) {
     const FinishedWall w{.helix_deg = 60, .up = up};
     const double want = drawn_figures(w).lateral_max_N;
-    EXPECT_NEAR(camber_figures(w).lateral_max_N, want, 0.01 * want);
+    expect_figure(up ? "peak force, up" : "peak force, down", camber_figures(w).lateral_max_N, want, 0.01);
   }
 }
 

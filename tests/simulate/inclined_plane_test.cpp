@@ -7,12 +7,14 @@
 
 #include "removal/form_error.h"
 #include "simulate/cut.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/cutting.h"
 
 namespace camber::simulate {
 namespace {
 
 using testing::add_row;
+using tests::expect_figure;
 
 constexpr double kFeed = 0.15, kRows = 0.3, kRadius = 3, kAllowance = 0.2;
 constexpr double kLength = 8;
@@ -88,24 +90,24 @@ Result simulate(machine::Coupling coupling, double width, double y_from, double 
 
 TEST(InclinedPlane, RigidCouplingMatchesTheIndependentCalculations) {
   const Result r = simulate(machine::Coupling::rigid, 7, 2.5, 4);
-  EXPECT_NEAR(r.lateral_max_N, 62.3, kTolerance * 62.3);
-  EXPECT_NEAR(r.force_mean_N.x(), -3.48, kTolerance * 3.48);
-  EXPECT_NEAR(r.force_mean_N.y(), -2.24, kTolerance * 2.24);
-  EXPECT_NEAR(r.force_mean_N.z(), 1.25, kTolerance * 1.25);
-  EXPECT_NEAR(r.deflection_um.x(), -53.8, kTolerance * 53.8);
-  EXPECT_NEAR(r.deflection_um.y(), -32.1, kTolerance * 32.1);
-  EXPECT_NEAR(-r.deflection_um.y() * std::sqrt(0.5), -(-22.7), kTolerance * 22.7);
-  EXPECT_NEAR(r.error_median_um, 16.6, kTolerance * 16.6);
-  EXPECT_NEAR(r.error_p5_um, 15.1, kTolerance * 15.1);
-  EXPECT_NEAR(r.error_p95_um, 17.9, kTolerance * 17.9);
-  EXPECT_NEAR(r.removed_fraction, 1, 0.01);
+  expect_figure("peak force", r.lateral_max_N, 62.3, kTolerance);
+  expect_figure("mean force x", r.force_mean_N.x(), -3.48, kTolerance);
+  expect_figure("mean force y", r.force_mean_N.y(), -2.24, kTolerance);
+  expect_figure("mean force z", r.force_mean_N.z(), 1.25, kTolerance);
+  expect_figure("deflection x", r.deflection_um.x(), -53.8, kTolerance);
+  expect_figure("deflection y", r.deflection_um.y(), -32.1, kTolerance);
+  expect_figure("deflection across the plane", -r.deflection_um.y() * std::sqrt(0.5), 22.7, kTolerance);
+  expect_figure("form error, median", r.error_median_um, 16.6, kTolerance);
+  expect_figure("form error, 5th percentile", r.error_p5_um, 15.1, kTolerance);
+  expect_figure("form error, 95th percentile", r.error_p95_um, 17.9, kTolerance);
+  expect_figure("chips against stock", r.removed_fraction, 1, 0.01);
 }
 
 TEST(InclinedPlane, StaticCouplingKeepsTheVolumeBalance) {
   // The bent cutter's chips are as large as what the stock loses: the tilt of the bent envelope is not forgotten.
   const Result r = simulate(machine::Coupling::static_, 3, 1, 2);
   // Two percent: the entry of each row, where the deflection jumps, is not as well balanced as the steady middle.
-  EXPECT_NEAR(r.removed_fraction, 1, 0.02);
+  expect_figure("chips against stock", r.removed_fraction, 1, 0.02);
   EXPECT_GT(r.error_median_um, 10);
   EXPECT_LT(r.error_median_um, 30);
 }

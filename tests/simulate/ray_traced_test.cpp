@@ -3,10 +3,12 @@
 #include <cstdio>
 #include <random>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/units.h"
 #include "simulate/cut.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/cutting.h"
 #include "tests/support/ray_traced_cutting.h"
 
@@ -98,9 +100,10 @@ TEST(RayTracedSlow, RandomShortPathsAgree) {
           c.name, path, stamps.size(), 100 * (mean - exact_mean).norm() / exact_mean.norm(),
           100 * (peak / exact_peak - 1), 100 * (lateral / exact_lateral - 1), 100 * off / exact_lateral,
           100 * (chips / exact_chips - 1));
-      EXPECT_LT((mean - exact_mean).norm(), kAgreement * exact_mean.norm()) << c.name;
-      EXPECT_NEAR(peak / exact_peak, 1, kAgreement) << c.name;
-      EXPECT_NEAR(lateral / exact_lateral, 1, kAgreement) << c.name;
+      const std::string of = fmt::format(", {}, path {}", c.name, path);
+      tests::expect_vector_figure("mean force" + of, mean, exact_mean, kAgreement);
+      tests::expect_figure("peak force" + of, peak, exact_peak, kAgreement);
+      tests::expect_figure("mean of the peaks" + of, lateral, exact_lateral, kAgreement);
       EXPECT_LT(off, kToothByTooth * exact_lateral) << c.name;
     }
   }

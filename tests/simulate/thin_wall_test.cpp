@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/units.h"
@@ -13,6 +14,7 @@
 #include "simulate/part_survey.h"
 #include "simulate/predict.h"
 #include "simulate/wall_thickness.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/cantilever_plate.h"
 #include "tests/support/cutting.h"
 
@@ -198,6 +200,7 @@ CutWall cut_wall(const Scene& s, machine::Coupling coupling, double x) {
 }
 
 TEST(ThinWallSlow, RigidCouplingLeavesWhatThePlateYields) {
+  tests::LargestFigure walls("form error of a wall cut level by level", 0.05);
   for (const double tip : {24.0, 12.0}) {
     const Scene scene(tip);
     constexpr double kAt = 30;
@@ -205,13 +208,14 @@ TEST(ThinWallSlow, RigidCouplingLeavesWhatThePlateYields) {
     const test::CantileverPlate plate = scene.plate(kAt);
     for (const int z : {1, 2, 3}) {
       const double expected = rigid_error_um(scene, plate, kAt, z);
-      EXPECT_NEAR(cut.total_um.at(z), expected, 0.05 * expected) << tip << " + " << z;
+      walls.expect(cut.total_um.at(z), expected, fmt::format("{} + {}", tip, z));
       EXPECT_NEAR(cut.part_um.at(z), cut.total_um.at(z), 0.02 * expected);
     }
   }
 }
 
 TEST(ThinWallSlow, StaticCouplingLeavesThePlatesEquilibrium) {
+  tests::LargestFigure walls("form error of a wall cut level by level", 0.05);
   const Scene scene(24);
   constexpr double kAt = 30;
   const CutWall cut = cut_wall(scene, machine::Coupling::static_, kAt);
@@ -220,7 +224,7 @@ TEST(ThinWallSlow, StaticCouplingLeavesThePlatesEquilibrium) {
   const test::CantileverPlate plate = scene.plate(kAt);
   for (const int z : {1, 2, 3}) {
     const double expected = static_error_um(scene, plate, kAt, z);
-    EXPECT_NEAR(cut.total_um.at(z), expected, 0.05 * expected) << z;
+    walls.expect(cut.total_um.at(z), expected, fmt::format("{}", z));
   }
 }
 

@@ -2,10 +2,12 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include "removal/stock.h"
+#include "tests/support/accuracy_figure.h"
 
 namespace camber::workpiece {
 namespace {
@@ -64,7 +66,10 @@ struct Wall {
 /// The reference: three-dimensional elasticity by 20-node hexahedra, graded, right within 0.1 %.
 void expect_reference(const Wall& wall, double share) {
   const auto u = wall.elastic.solve(std::vector<Load>{wall.load(28, 32), wall.load(56, 60)}, {});
-  const auto near = [&](double is, double reference) { EXPECT_NEAR(is, reference, share * reference); };
+  tests::LargestFigure displacements("displacement of a wall in three dimensions", share);
+  const auto near = [&](double is, double reference) {
+    displacements.expect(is, reference, fmt::format("{} um", reference));
+  };
   near(wall.um(u[0], 30, 2, 29), 337.44);
   near(wall.um(u[0], 30, 2, 30), 356.66);
   near(wall.um(u[0], 60, 2, 30), 211.13);
@@ -125,7 +130,7 @@ TEST(Elastic, BeamBendsByTimoshenko) {
   const double moved = displacement_mm(end.where, elastic.solve(std::vector<Load>{end}, {}).front()).x();
   const double inertia = std::pow(kSide, 4) / 12, shear = kE_MPa / (2 * (1 + kNu));
   const double expected = std::pow(kLength, 3) / (3 * kE_MPa * inertia) + kLength / (5.0 / 6 * shear * kSide * kSide);
-  EXPECT_NEAR(moved, expected, 0.015 * expected);  // the foot cannot contract, either
+  tests::expect_figure("displacement", moved, expected, 0.015);  // the foot cannot contract, either
 }
 
 /// A line load along the free edge of a wide cantilever plate bends it like a beam but for the anticlastic curvature:
@@ -140,12 +145,13 @@ TEST(Elastic, WidePlateUnderALineLoadBendsByItsPlateStiffness) {
   const double middle = displacement_mm(solid.at({kWidth / 2, 0.6, kHeight}), u).y();
   const double stiffness = kE_MPa * std::pow(kThick, 3) / (12 * (1 - kNu * kNu));
   const double expected = std::pow(kHeight, 3) / (3 * kWidth * stiffness);
-  EXPECT_NEAR(middle, expected, 0.02 * expected);
+  tests::expect_figure("displacement", middle, expected, 0.02);
 }
 
 /// w D / (P c^2) of a square cantilever plate, nu = 0.33, by Kirchhoff's theory (Ritz, converged): the load at a
 /// corner, and in the middle of the free edge read at its corner.
 TEST(Elastic, SquareCantileverPlateBendsByKirchhoff) {
+  tests::LargestFigure displacements("displacement", 0.02);
   constexpr double kSide = 40, kThick = 1;
   const Stock stock = box({0.1, 0.1, 0}, {kSide + 0.1, kThick + 0.1, kSide}, 0.2);
   const Solid solid(stock, aluminium(1));
@@ -155,7 +161,7 @@ TEST(Elastic, SquareCantileverPlateBendsByKirchhoff) {
   const auto u = elastic.solve(loads, {.tolerance = 1e-5});
   const double unit = kSide * kSide * 12 * (1 - kNu * kNu) / (kE_MPa * std::pow(kThick, 3));
   const auto expect = [&](const Displacements& of, double x, double z, double coefficient) {
-    EXPECT_NEAR(displacement_mm(at(x, z), of).y(), coefficient * unit, 0.02 * coefficient * unit);
+    displacements.expect(displacement_mm(at(x, z), of).y(), coefficient * unit, fmt::format("{}, {}", x, z));
   };
   expect(u[0], kSide, kSide, 0.331346);
   expect(u[0], kSide / 2, kSide, 0.365270);
@@ -180,7 +186,7 @@ TEST(Elastic, ClampedSquarePlateBendsByKirchhoff) {
   const Displacements u =
       elastic.solve(std::vector<Load>{{solid.at(middle), Vec3::UnitZ()}}, {.tolerance = 1e-5}).front();
   const double expected = 0.005612 * kSide * kSide * 12 * (1 - kNu * kNu) / (kE_MPa * std::pow(kThick, 3));
-  EXPECT_NEAR(displacement_mm(solid.at(middle), u).z(), expected, 0.03 * expected);
+  tests::expect_figure("displacement", displacement_mm(solid.at(middle), u).z(), expected, 0.03);
 }
 
 /// Pressure on a square of a half space: the middle sinks twice as far as the corners, 4 p a (1 - nu^2) asinh(1) / (pi
@@ -196,7 +202,7 @@ TEST(Elastic, ThickBlockUnderAPatchSinksByLove) {
   const Displacements u = elastic.solve(std::vector<Load>{load}, {.tolerance = 1e-5}).front();
   const double sinks = displacement_mm(solid.at(middle), u).z() - displacement_mm(solid.at(corner), u).z();
   const double expected = 2 * (1 - kNu * kNu) * std::asinh(1) / (kPi * kE_MPa * kPatch);
-  EXPECT_NEAR(sinks, expected, 0.03 * expected);
+  tests::expect_figure("sinking", sinks, expected, 0.03);
 }
 
 /// A stiff block on a soft fixture moves as a whole.
