@@ -40,6 +40,16 @@ std::vector<std::string> examples_in(const std::string& help) {
   return out;
 }
 
+TEST(Help, IsWhatTheReferenceOfOptionsSays) {
+  const TempFolder folder;
+  const std::string made = folder / "options.md";
+  const std::string command = std::string("python3 '") + CAMBER_SOURCE_DIR "/scripts/make-man-pages' '" +
+                              CAMBER_EXECUTABLE + "' --reference '" + made + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_TRUE(tests::file_text(made) == tests::file_text(CAMBER_SOURCE_DIR "/docs/reference/options.md"))
+      << "scripts/make-man-pages build/release/camber --reference docs/reference/options.md";
+}
+
 TEST(Help, HasAnExampleForEverySubcommandThatRunsInASampleFolder) {
   const TempFolder folder;
   const std::string samples = CAMBER_SOURCE_DIR "/samples/";
