@@ -87,21 +87,23 @@ class Report {
 
   bool full() const { return said_.size() >= kMaxLines; }
   bool has(int number, std::uint32_t block) const { return said_.contains(block) || warned_.contains(number); }
-  /// A length that nobody gave refuses no program: it is warned of, once.
+  /// What nobody gave, the length or the blank, refuses no program: it is warned of, once a tool.
   void add(int number, std::uint32_t block, double height_mm) {
     const machine::Tool& tool = job_.tools.at(number);
     const bool flutes = tool.flute_length_mm && *tool.flute_length_mm < tool.overhang_mm;
     const char* key = flutes ? "flute_length_mm" : "overhang_mm";
-    const auto assumed = assumed_.find(fmt::format("tool.{}", number));
-    if (assumed != assumed_.end() && std::ranges::find(assumed->second, key) != assumed->second.end()) {
+    const char* name = flutes ? "cut-above-flutes" : "cut-above-overhang";
+    const bool length = is_assumed(fmt::format("tool.{}", number), key), blank = is_assumed("stock", "box_mm");
+    if (length || blank) {
       warned_.insert(number);
       diagnostics_.add(program_.text.source.diagnostic(
           Severity::warning, program_.text.blocks[block].offset,
-          fmt::format(
-              "T{} meets material {:.1f} mm above its tip, but {} = {:g}, which is assumed; the length that the "
-              "tool has was expected, or a stock that is cut so far",
-              number, height_mm, key, cutter_end_mm(tool)),
-          flutes ? "cut-above-flutes" : "cut-above-overhang"));
+          fmt::format("T{} meets material {:.1f} mm above its tip, but {} = {:g}, {}", number, height_mm, key,
+                      cutter_end_mm(tool),
+                      length
+                          ? "which is assumed; the length that the tool has was expected, or a stock that is cut so far"
+                          : "in a blank that is assumed; the blank as it is at that line was expected"),
+          name));
       return;
     }
     said_.insert(block);
@@ -109,10 +111,15 @@ class Report {
         Severity::error, program_.text.blocks[block].offset,
         fmt::format("T{} meets material {:.1f} mm above its tip, but {} = {:g}; a cut that {} was expected", number,
                     height_mm, key, cutter_end_mm(tool), flutes ? "its flutes reach" : "ends below the holder"),
-        flutes ? "cut-above-flutes" : "cut-above-overhang"));
+        name));
   }
 
  private:
+  bool is_assumed(const std::string& table, const char* key) const {
+    const auto found = assumed_.find(table);
+    return found != assumed_.end() && std::ranges::find(found->second, key) != found->second.end();
+  }
+
   const machine::Job& job_;
   const SimulatedProgram& program_;
   Diagnostics& diagnostics_;

@@ -300,6 +300,20 @@ TEST(SetUp, AnAssumedOverhangRefusesNothing) {
   EXPECT_EQ(run.err.find("[cut-above-overhang]"), run.err.rfind("[cut-above-overhang]")) << run.err;
 }
 
+TEST(SetUp, AnAssumedBlankRefusesNothing) {
+  const TempFolder folder;
+  std::string job = replaced(kJob, "overhang_mm = 30.0", "overhang_mm = 30.0\nflute_length_mm = 1.5");
+  job = replaced(job, "[stock]", "[stock]\nassumed = [\"box_mm\"]") + "collisions = \"warning\"\n";
+  write(folder, {.program = replaced(kSlot, "G1 X12 F900", "G1 X6 F900\nX12"), .job = job});
+  const CamberRun run = run_camber(folder, "check --job job.toml");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("p.nc:6:1: warning: T1 meets material 2.0 mm above its tip, but flute_length_mm = 1.5, in a "
+                         "blank that is assumed; the blank as it is at that line was expected [cut-above-flutes]\n"),
+            std::string::npos)
+      << run.err;
+  EXPECT_EQ(run.err.find("[cut-above-flutes]"), run.err.rfind("[cut-above-flutes]")) << run.err;
+}
+
 TEST(SetUp, SecondCutMayGoDeeperThanTheFlutes) {
   const TempFolder folder;
   write(folder, {.program = replaced(kSlot, "G1 X12 F900", "G1 X12 F900\nG0 Z5\nX-4\nZ-4\nG1 X12"),
