@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "deflection/beam.h"
+#include "simulate/machine_checks.h"
 
 namespace camber::simulate {
 namespace {
@@ -22,6 +23,7 @@ std::map<Key, const nc::Move*> first_moves(const nc::Interpretation& moves, cons
   for (std::size_t i = 0; i < moves.moves.size(); ++i) {
     if (!selected[i] && !removal::makes_hole(holes[i])) continue;
     const auto& s = moves.state_of(moves.moves[i]);
+    if (s.spindle == nc::SpindleDirection::stopped && withdraws(moves, moves.moves[i])) continue;
     out.try_emplace({s.tool, s.spindle_speed_rpm, s.spindle, holes[i]}, &moves.moves[i]);
   }
   return out;

@@ -174,13 +174,17 @@ void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Di
       "feed-absurd"));
 }
 
+bool withdraws(const nc::Interpretation& moves, const nc::Move& move) {
+  return move.kind == nc::MoveKind::linear && nc::direction_at(moves, move, 0).isApprox(Vec3::UnitZ(), kStill_mm);
+}
+
 void check_spindle(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics) {
   const auto say = [&](const nc::Move& m, Severity severity, std::string message, const char* check) {
     diagnostics.add(program.source.diagnostic(severity, program.blocks[m.block].offset, std::move(message), check));
   };
   std::set<std::tuple<int, double, nc::SpindleDirection>> said;
   for (const nc::Move& m : moves.moves) {
-    if (!cuts(m) || m.reference) continue;
+    if (!cuts(m) || m.reference || withdraws(moves, m)) continue;
     const nc::ModalState& s = moves.state_of(m);
     const bool taps = m.cycle == 74 || m.cycle == 84;
     if (taps || !said.insert({s.tool, s.spindle_speed_rpm, s.spindle}).second) continue;

@@ -19,9 +19,12 @@ void check_machine(const machine::Machine& machine, const nc::Program& program, 
 /// place.
 void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics);
 
-/// For a program without a job, where every line and arc counts as a cut: errors [spindle-stopped] and
-/// [spindle-direction] (cutters are right-hand; tapping aside). A program without any spindle speed or start may be one
-/// to run in air, as `camber protocol` writes them: only a warning.
+/// A line straight up: the tool leaves what it has cut, as it may with the spindle stopped.
+bool withdraws(const nc::Interpretation& moves, const nc::Move& move);
+
+/// For a program without a job, where every line and arc but those straight up counts as a cut: errors
+/// [spindle-stopped] and [spindle-direction] (cutters are right-hand; tapping aside). A program without any spindle
+/// speed or start may be one to run in air, as `camber protocol` writes them: only a warning.
 void check_spindle(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics);
 
 }  // namespace camber::simulate

@@ -140,6 +140,18 @@ TEST(SetUp, MissingSpindleSpeed) {
                             "[spindle-stopped]\n    G1 X12 F900\n    ^\n");
 }
 
+TEST(SetUp, AToolMayLeaveTheCutWithTheSpindleStopped) {
+  const TempFolder folder;
+  write(folder, {.program = replaced(kSlot, "G0 Z5\nM30", "M5\nG1 Z5 F2000\nM30")});
+  for (const char* command : {"check p.nc --machine machine.toml", "check --job job.toml"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 0) << command;
+    EXPECT_EQ(run.err, "") << command;
+  }
+  write(folder, {.program = replaced(kSlot, "G0 Z5\nM30", "M5\nG1 X6 Z5 F2000\nM30")});
+  EXPECT_EQ(run_camber(folder, "check --job job.toml").status, 1);
+}
+
 TEST(SetUp, SpindleTheWrongWay) {
   expect_refused_by_machine({.program = replaced(kSlot, "M3\n", "M4\n")},
                             "p.nc:6:1: error: T1 cuts here under M4, but cutters are right-hand; M3 was expected "
