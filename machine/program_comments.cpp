@@ -31,6 +31,13 @@ std::optional<std::size_t> star_of(std::string_view text) {
   return at != std::string_view::npos && text[at] == '*' ? std::optional(at) : std::nullopt;
 }
 
+/// MSG("FACE MILL D100") of Sinumerik: the quotes are the language's, no sign for inches.
+std::string_view without_quotes(std::string_view text) {
+  const std::size_t from = text.find_first_not_of(' '), to = text.find_last_not_of(' ');
+  if (from == std::string_view::npos || to == from || text[from] != '"' || text[to] != '"') return text;
+  return text.substr(from + 1, to - from - 1);
+}
+
 Split split(std::string_view text) {
   text = text.substr(0, kLongest);
   Split out;
@@ -45,7 +52,7 @@ Split split(std::string_view text) {
       continue;
     }
     const std::size_t end = c == ';' ? text.size() : end_of_comment(text, at, c, bracket ? ']' : ')');
-    if (!out.has_comment) out.comment = std::string(text.substr(at + 1, end - at - 1));
+    if (!out.has_comment) out.comment = std::string(without_quotes(text.substr(at + 1, end - at - 1)));
     out.has_comment = true;
     at = std::min(end, text.size() - 1) + 1;
   }

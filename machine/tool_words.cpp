@@ -173,9 +173,12 @@ void read_angle(const std::string& words, ToolProposal& tool) {
 void read_diameter(const std::string& words, bool inch, ToolProposal& tool) {
   static const std::regex kShankDiameter(R"(SHANK\s*DIA(?:METER)?)");
   tool.diameter_mm = find_size(words, R"((?:^[\s|]*|[^-.=#:\d/\s"]\s*)NUM\s*DIA(?:M|METER)?\b)", inch);
-  if (!tool.diameter_mm && has(words, "DIA"))
-    tool.diameter_mm =
-        find_size(std::regex_replace(words, kShankDiameter, "SHANK"), R"(\bDIA(?:M|METER)?\b\.?\s*[-=:]*\s*NUM)", inch);
+  // English, French, Italian, Spanish, German: "DIAMETRE 100", "DIA OUTIL = 12.", "DURCHMESSER 8".
+  if (!tool.diameter_mm && (has(words, "DIA") || has(words, "DURCHM")))
+    tool.diameter_mm = find_size(std::regex_replace(words, kShankDiameter, "SHANK"),
+                                 R"(\b(?:DIA(?:M|METER|METR[EO])?|DURCHM(?:ESSER)?)\b\.?(?:\s*(?:OUTIL|TOOL|FRAISE))?)"
+                                 R"(\s*[-=:]*\s*NUM)",
+                                 inch);
   if (!tool.diameter_mm) tool.diameter_mm = find_size(words, R"(\bD\s*[=:]\s*NUM)", inch);
   if (!tool.diameter_mm) read_gauge(words, tool);
   if (!tool.diameter_mm) read_bare_size(words, inch, tool);

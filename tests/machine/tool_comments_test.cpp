@@ -153,6 +153,12 @@ TEST(StockComments, GiveASizeAndWhereTheZeroIs) {
   EXPECT_FALSE(stock_in_comments(SourceText("p.nc", "(STOCK TO LEAVE 0.5)\n(MATERIAL ALUMINIUM)\n(T1 D=6.)\n"), false));
 }
 
+TEST(ToolComments, OfMessagesOfSinumerikPrograms) {
+  expect_tool({"N30 T1 D1\nN40 MSG(\"FRAISE DIAMETRE 100\")\nN50 M6", false, 1, ToolType::flat, 100.0});
+  expect_tool({"T4 D1\nM6\nMSG(\"FRESA DIAMETRO 16\")", false, 4, ToolType::flat, 16.0});
+  expect_tool({"T2 D1\nMSG (\" END MILL D12 \")\nM6", false, 2, ToolType::flat, 12.0});
+}
+
 TEST(ToolComments, OfKlartextPrograms) {
   const std::string cut = "\n3 L X+0 Y+0 Z+0 FMAX\n4 L X+9 F100\n";
   const auto expect = [&](const std::string& lines, int number, std::optional<ToolType> type, double diameter_mm) {
