@@ -41,6 +41,7 @@ void Run::execute(const std::function<void()>& work) {
     cancellation_point();
     work();
   });
+  if (options_.progress) options_.progress("done", 1);  // nothing is left to stop: the answer does not count
 }
 
 void Run::show(std::string_view what, double fraction) {

@@ -176,22 +176,36 @@ std::string box_text(const machine::Box& box) {
   return fmt::format("box_mm = [{}, {}]\n", corner(box.min_mm), corner(box.max_mm));
 }
 
-std::string stock_text(const nc::Summary& summary, const std::optional<StockProposal>& stock) {
+/// What a pass before has left. allowance_mm: of a program that finishes alone; 0: an example.
+std::string allowance_text(const StockProposal& stock, double allowance_mm) {
+  if (allowance_mm == 0)
+    return line("# allowance_mm = 0.2", "what the pass before has left, where it had the same path");
+  return fmt::format(
+             "# CHECK: this program finishes alone: in the whole blank {}.\n"
+             "# So the blank is taken as roughed along the same path, this much short of it; take the key out where "
+             "the\n"
+             "# program does rough, or give the roughed part: mesh = \"roughed.stl\".\n",
+             stock.finishes) +
+         line(fmt::format("allowance_mm = {}", decimal(allowance_mm)), "typical: what roughing leaves for finishing");
+}
+
+std::string stock_text(const nc::Summary& summary, const std::optional<StockProposal>& stock, double allowance_mm) {
   if (!stock) return line("# box_mm =", "[[x, y, z], [x, y, z]]: corners of the blank; no move of the program cuts");
   std::string out = fmt::format("# Cutting moves of the tip: {} mm.\n", extents_text(summary.cutting));
+  std::vector<std::string> assumed;
+  if (stock->told.empty() || !stock->placed.empty()) assumed.emplace_back("box_mm");
+  if (allowance_mm > 0) assumed.emplace_back("allowance_mm");
   if (!stock->told.empty())
     return out + fmt::format("# {}\n", plain(stock->told)) +
            (stock->placed.empty() ? "" : fmt::format("# Its place: {}.\n", stock->placed)) + box_text(stock->box) +
-           (stock->placed.empty() ? "" : assumed_line({"box_mm"}));
+           (allowance_mm > 0 ? allowance_text(*stock, allowance_mm) : "") + assumed_line(assumed);
   out += fmt::format(
       "# The blank is not known: this box holds what the cutters sweep, 2 mm wider and 1 mm deeper.\n# Its top: {}.\n",
       stock->top);
   if (stock->trimmed) out += "# Sides are taken back from where rapids go down beside the part.\n";
   if (stock->in_the_way)
     out += "# CHECK: rapids run through it, as through every box of this program; give the blank's true shape.\n";
-  return out + box_text(stock->box) +
-         line("# allowance_mm = 0.2", "what the pass before has left, where it had the same path") +
-         assumed_line({"box_mm"});
+  return out + box_text(stock->box) + allowance_text(*stock, allowance_mm) + assumed_line(assumed);
 }
 
 /// Steel, or aluminium where a tool cuts faster than steel is cut.
@@ -263,7 +277,7 @@ std::string machine_text(const JobProposal& proposal) {
 }
 
 /// The finest voxel of the list whose fields stay small for this blank.
-std::string simulation_text(const std::optional<StockProposal>& stock) {
+double usual_voxel_mm(const std::optional<StockProposal>& stock) {
   constexpr std::array kVoxels_mm{0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.8, 1.0};
   constexpr double kBytes = 1.5e9, kBandVoxels = 3;
   double voxel = kVoxels_mm.front();
@@ -272,6 +286,16 @@ std::string simulation_text(const std::optional<StockProposal>& stock) {
       voxel = kVoxels_mm[i];
       if (simulate::field_bytes(stock->box.max_mm - stock->box.min_mm, voxel, kBandVoxels) <= kBytes) break;
     }
+  return voxel;
+}
+
+/// Two voxels at least, so that the field can tell it.
+double allowance_mm(const std::optional<StockProposal>& stock) {
+  return stock && stock->allowance_mm > 0 ? std::max(stock->allowance_mm, 2 * usual_voxel_mm(stock)) : 0;
+}
+
+std::string simulation_text(const std::optional<StockProposal>& stock) {
+  const double voxel = usual_voxel_mm(stock);
   std::string out = "\n[simulation]\n" + line(fmt::format("voxel_mm = {}", decimal(voxel)),
                                               "by the blank's size; for finishing half the allowance or less");
   if (stock && (stock->in_the_way || stock->told.empty()))
@@ -304,7 +328,7 @@ std::string job_text(const JobProposal& proposal) {
   }
   out += line(fmt::format("# operations = {{ tools = [{}] }}", cutting), "only these are simulated and compensated");
   out += tools + material_text(proposal.material, proposal.summary, by_number) + "\n[stock]\n" +
-         stock_text(proposal.summary, stock);
+         stock_text(proposal.summary, stock, allowance_mm(stock));
   out += simulation_text(stock) + "\n[compensation]\n";
   out += line("tolerance_um = 5.0", "95 % of the surface; or profile_um = [-5, 10], the band that the drawing gives");
   return out + "max_shift_mm = 0.1\n";

@@ -10,6 +10,7 @@
 #include "machine/stock_comments.h"
 #include "nc/known_places.h"
 #include "nc/summary.h"
+#include "report/cut_depths.h"
 
 namespace camber::report {
 namespace {
@@ -73,8 +74,20 @@ class Map {
     highest_ = cut_;
   }
 
-  void cut(const Vec3& tip, const Profile& p) {
-    visit(tip, p, 0, [&](std::size_t i, double z) { cut_[i] = std::min(cut_[i], z); });
+  /// top_mm: of the blank.
+  MetMaterial cut(const Vec3& tip, const Profile& p, double top_mm, double step_mm) {
+    MetMaterial met;
+    double fresh = 0;  // cells that nothing has cut
+    visit(tip, p, 0, [&](std::size_t i, double z) {
+      const double depth = std::min(cut_[i], top_mm) - z;
+      met.depth_mm = std::max(met.depth_mm, depth);
+      if (depth > 0) met.above_tip_mm = std::max(met.above_tip_mm, z + depth - tip.z());
+      fresh += depth > 0 && cut_[i] == kNever;
+      cut_[i] = std::min(cut_[i], z);
+    });
+    const double swept_mm2 = 2 * p.radius_mm * std::max(step_mm, cell_);
+    if (swept_mm2 > 0) met.width_fraction = fresh * cell_ * cell_ / swept_mm2;
+    return met;
   }
   void pass(const Vec3& tip, const Profile& p) {
     visit(tip, p, -cell_, [&](std::size_t i, double z) {
@@ -183,6 +196,7 @@ class Proposer {
   Proposer(const nc::Program& text, const nc::Interpretation& moves, const ToolsByNumber& tools)
       : text_(text), moves_(moves) {
     for (const auto& [number, tool] : tools) profiles_[number] = profile_of(tool);
+    tools_ = tools;
   }
 
   std::optional<StockProposal> run() {
@@ -198,8 +212,9 @@ class Proposer {
     out.top = below_zero ? "the program's Z0, below which all cutting lies"
                          : fmt::format("{:g} mm above the highest pass", kAboveHighest_mm);
     Map map(low_, high_);
-    run_through(map);
+    run_through(map, wanted);
     choose(map, pass, wanted, out);
+    look_at_depths(out);
     return out;
   }
 
@@ -225,10 +240,11 @@ class Proposer {
     low_ = swept.min_mm - Vec3(kSide_mm, kSide_mm, kBelow_mm);
     high_ = swept.max_mm + Vec3(kSide_mm, kSide_mm, 0);
     Map map(low_, high_);
-    run_through(map);
     const double top = out.box.max_mm.z();
+    run_through(map, top);
     const auto sums = map.removed_sums(top);
     out.in_the_way = map.best(top, sums) != map.all();
+    look_at_depths(out);
     return out;
   }
 
@@ -307,7 +323,13 @@ class Proposer {
     return pass > -kNever ? pass : lowest;
   }
 
-  void run_through(Map& map) {
+  void look_at_depths(StockProposal& out) const {
+    if (!depths_.finishing_alone()) return;
+    out.finishes = depths_.deepest();
+    out.allowance_mm = depths_.usual_allowance_mm();
+  }
+
+  void run_through(Map& map, double top_mm) {
     nc::KnownPlaces places(text_, moves_);
     for (const nc::Move& m : moves_.moves) {
       const nc::KnownPlaces::Ends known = places.next(m);
@@ -318,7 +340,13 @@ class Proposer {
       for (int i = is_rapid(m) && !known.start ? steps : 0; i <= steps; ++i) {
         const Vec3 tip = nc::point_at(moves_, m, static_cast<double>(i) / steps);
         if (is_rapid(m) && !over_box(tip, p.radius_mm)) continue;
-        is_rapid(m) ? map.pass(tip, p) : map.cut(tip, p);
+        if (is_rapid(m)) {
+          map.pass(tip, p);
+          continue;
+        }
+        const double step_mm = nc::length_mm(moves_, m) / steps;
+        const MetMaterial met = map.cut(tip, p, top_mm, step_mm);
+        if (is_lateral(m)) depths_.add(tools_[moves_.state_of(m).tool], met, step_mm);
       }
     }
   }
@@ -365,6 +393,8 @@ class Proposer {
   const nc::Program& text_;
   const nc::Interpretation& moves_;
   std::map<int, Profile> profiles_;
+  ToolsByNumber tools_;
+  CutDepths depths_;
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
 };
 

@@ -18,6 +18,9 @@ struct StockProposal {
   bool trimmed = false;     ///< sides were taken back from rapids beside the part
   bool in_the_way = false;  ///< rapids run through it, and no smaller box of use is clear of them
   std::string told{};       ///< the comment that gives it, with its line; empty: none, and the box is a guess
+  std::string
+      finishes{};  ///< why the program only finishes what others have roughed (cut_depths.h); empty: it does not
+  double allowance_mm = 0;  ///< that they will have left; 0 where `finishes` is empty
   std::string placed{};     ///< how a blank of which only the size is told was placed; empty: its place is told too
 };
 

@@ -11,7 +11,8 @@ inline namespace v0 {
 
 struct RunOptions {
   /// Called from the calling thread with the name of the current step ("cutting") and its completed fraction, 0 to 1.
-  /// Returns false to stop: the function then throws Cancelled. Exceptions propagate to the caller.
+  /// Returns false to stop: the function then throws Cancelled. Exceptions propagate to the caller. Last of all, when
+  /// the function has succeeded: ("done", 1).
   std::function<bool(std::string_view what, double fraction)> progress{};
   std::stop_token stop{};  ///< a request makes the function throw Cancelled, usually within a tenth of a second
   bool strict = false;     ///< warnings are errors: the function throws InputError where there is one

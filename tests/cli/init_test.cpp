@@ -1,4 +1,5 @@
 // camber init: a job file from a program and tool tables.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/run_camber.h"
@@ -132,6 +133,53 @@ TEST(Init, NamesMaterialsAsEveryStandardDoes) {
   const auto unknown = run_camber(folder, "init wall.nc --material unobtainium -o other.toml");
   EXPECT_EQ(unknown.status, 2);
   EXPECT_NE(unknown.err.find("nothing is known of a material \"unobtainium\""), std::string::npos) << unknown.err;
+}
+
+/// Rows of a ball end mill, 0.5 mm apart, along a floor 12 mm below the top of the blank.
+std::string deep_rows() {
+  std::string out;
+  for (int row = 0; row <= 20; ++row)
+    out += fmt::format("G0 X{} Y{:.1f} Z3.\nG1 Z-12. F300\nX{} F900\nG0 Z3.\n", row % 2 == 0 ? 0 : 20, 0.5 * row,
+                       row % 2 == 0 ? 20 : 0);
+  return out;
+}
+
+/// A flat end mill that takes the same floor out in steps of `step_mm`.
+std::string levels(double step_mm) {
+  std::string out = "(T1 D=8. - FLAT END MILL)\nT1 M6\nS4000 M3\n";
+  for (double z = -step_mm; z > -12.1; z -= step_mm)
+    for (int row = 0; row <= 3; ++row)
+      out += fmt::format("G0 X-8. Y{} Z3.\nG1 Z{:.1f} F300\nX28. F900\nG0 Z3.\n", 4 * row - 1, z);
+  return out;
+}
+
+const std::string kBallTool = "(T2 D=6. - BALL END MILL)\nT2 M6\nS4000 M3\n";
+
+std::string job_of_program(const TempFolder& folder, const std::string& moves) {
+  folder.write("p.nc", "G21 G90 G17 G40 G49 G80 G54\n" + moves + "M30\n");
+  const auto run = run_camber(folder, "-q init p.nc -o job.toml");
+  EXPECT_EQ(run.status, 0) << run.err;
+  std::string job = tests::file_text(folder / "job.toml");
+  job = job.substr(job.find("# Its top"));
+  return job.substr(0, job.find("\n\n"));
+}
+
+TEST(Init, SaysOfAProgramThatFinishesAloneWhatRoughingHasLeft) {
+  EXPECT_EQ(job_of_program(TempFolder(), kBallTool + deep_rows()),
+            R"(# Its top: the program's Z0, below which all cutting lies.
+box_mm = [[-5.0, -5.0, -13.0], [25.0, 15.0, 0.0]]
+# CHECK: this program finishes alone: in the whole blank a ball end mill of 6 mm would cut up to 12.0 mm deep.
+# So the blank is taken as roughed along the same path, this much short of it; take the key out where the
+# program does rough, or give the roughed part: mesh = "roughed.stl".
+allowance_mm = 0.3                # typical: what roughing leaves for finishing
+assumed = ["box_mm", "allowance_mm"] # results begin with these: take out what you have put in)");
+}
+
+TEST(Init, SaysNothingOfThatWhereTheProgramRoughs) {
+  for (const std::string& moves : {levels(3) + kBallTool + deep_rows(),  // finishing after it
+                                   levels(12),                           // a whole-depth cut of 1.5 diameters
+                                   kBallTool + "G0 X0. Y0. Z3.\nG1 Z-2. F300\nX20. F900\nG0 Z3.\n"})
+    EXPECT_EQ(job_of_program(TempFolder(), moves).find("\nallowance_mm"), std::string::npos) << moves;
 }
 
 TEST(Init, WritesAPresetAsAMachineFile) {

@@ -190,6 +190,7 @@ class Calls(unittest.TestCase):
         camber.predict(COARSE, progress=lambda what, done: seen.append((what, done)))
         self.assertIn("cutting", {what for what, _ in seen})
         self.assertTrue(all(0 <= done <= 1 for _, done in seen))
+        self.assertEqual(seen[-1], ("done", 1))
         with self.assertRaises(camber.Cancelled):
             camber.predict(COARSE, progress=lambda what, done: done < 0.3)
 
