@@ -44,8 +44,6 @@ std::string CutDepths::deepest() const {
                      of_diameter_mm_, deepest_mm_);
 }
 
-double CutDepths::usual_allowance_mm() const {
-  return std::clamp(std::round(smallest_mm_) / 20, 0.2, 0.5);
-}
+double CutDepths::usual_allowance_mm() const { return std::clamp(std::round(smallest_mm_) / 20, 0.2, 0.5); }
 
 }  // namespace camber::report

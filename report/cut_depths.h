@@ -15,10 +15,10 @@ struct MetMaterial {
 
 /// Sums over the way that tools cut, how much of it no tool can cut.
 ///
-/// Impossible is: material over a ball end mill's widest place by more than half its diameter; other mills deeper than 1.5 diameters over half their
-/// width, or deeper than their flutes (4 diameters where nobody gives their length) at any width. Narrow deep cuts of
-/// end mills are high-speed roughing and walls, and are possible. Drills and chamfering tools do not count, nor tools
-/// without a known diameter.
+/// Impossible is: material over a ball end mill's widest place by more than half its diameter; other mills deeper
+/// than 1.5 diameters over half their width, or deeper than their flutes (4 diameters where nobody gives their length)
+/// at any width. Narrow deep cuts of end mills are high-speed roughing and walls, and are possible. Drills and
+/// chamfering tools do not count, nor tools without a known diameter.
 class CutDepths {
  public:
   void add(const machine::ToolProposal& tool, const MetMaterial& met, double step_mm);

@@ -201,6 +201,62 @@ TEST(Plausibility, CoefficientsInOtherUnits) {
             "to 0.06 mm was expected (are both in N and mm?) [material-values]\n");
 }
 
+/// The pocket's two levels at other heights.
+std::string pocket_at(double first_mm, double second_mm, const std::string& feed = "F800") {
+  return replaced(replaced(replaced(pocket_rows(), "Z-3 F200", fmt::format("Z{:g} F200", first_mm)), "Z-6 F200",
+                           fmt::format("Z{:g} F200", second_mm)),
+                  "F800", feed);
+}
+
+TEST(Plausibility, CutterOfAnotherShapeThanItsPath) {
+  // Without the comment the path alone tells.
+  const std::string rows = replaced(roof_rows(), "(T1 D=6. CR=3. - BALL END MILL)\n", "");
+  const auto on_roof = [&](const char* type) {
+    return of_check(said({.job = replaced(kRoof, "\"ball\"", type), .program = rows}), "tool-path");
+  };
+  EXPECT_EQ(on_roof("\"ball\""), "");
+  EXPECT_EQ(
+      on_roof("\"flat\""),
+      "p.nc:5: warning: T1 is \"flat\" in the job, but 94 % of its path rises and falls as over a curved surface; "
+      "a ball or bull end mill was expected [tool-path]\n");
+  EXPECT_EQ(
+      on_roof("\"bull\"\ncorner_radius_mm = 0.5"),
+      "p.nc:5: warning: T1 is \"bull\" in the job, but 94 % of its path rises and falls as over a curved surface; "
+      "a ball or bull end mill was expected [tool-path]\n");
+  EXPECT_EQ(on_roof("\"bull\"\ncorner_radius_mm = 1.5"), "");  // half the radius follows surfaces
+
+  const std::string ball =
+      replaced(replaced(kPocket, "\"flat\"", "\"ball\""), "diameter_mm = 8.0", "diameter_mm = 6.0");
+  EXPECT_EQ(
+      of_check(said({.job = ball, .program = pocket_at(-4, -8)}), "tool-path"),
+      "p.nc:7: warning: T1 is \"ball\" in the job, but 96 % of its path is level and cuts 2.9 mm deep with a radius "
+      "of 3 mm, as end mills with a flat bottom do; a ball end mill's path was expected [tool-path]\n");
+  EXPECT_EQ(of_check(said({.job = ball, .program = pocket_at(-1, -2)}), "tool-path"), "");
+}
+
+TEST(Plausibility, CutsDeeperThanTheCutterIsWide) {
+  const std::string deep_stock = replaced(kPocket, "[-30, -20, -15]", "[-30, -20, -40]");
+  EXPECT_EQ(of_check(said({.job = deep_stock, .program = pocket_at(-26, -26)}), "cut-depth"),
+            "p.nc:9: warning: T1 cuts 26.0 mm deep at once, 3.2 times its diameter; at most 3 times in a slot was "
+            "expected (is the stock too high, or the tool another one?) [cut-depth]\n");
+  EXPECT_EQ(of_check(said({.job = deep_stock, .program = pocket_at(-22, -22)}), "cut-depth"), "");
+}
+
+TEST(Plausibility, CutsThatNeitherSpindleNorToolStands) {
+  // 8 x 3 mm at 60 m/min in 1860 MPa are 44.6 kW.
+  EXPECT_EQ(of_check(said({.job = kPocket, .program = pocket_at(-3, -6, "F60000")}), "cut-power"),
+            "p.nc:9: error: T1 needs 44.6 kW for its chips; no more than 30 kW was expected (depth of the cut, "
+            "[material], F?) [cut-power]\n");
+  // 6.7 kW over 2.51 m/s are 2.66 kN.
+  EXPECT_EQ(
+      of_check(said({.job = replaced(kPocket, "overhang_mm = 30.0", "overhang_mm = 100.0"),
+                     .program = pocket_at(-3, -6, "F9000")}),
+               "cut-power"),
+      "p.nc:9: error: T1 would bend by 7.5 mm under the mean force of its chips, 2.66e+03 N, and break; a cut that "
+      "a cutter of 8 mm with overhang_mm = 100 stands was expected [cut-power]\n");
+  EXPECT_EQ(of_check(said({.job = kPocket, .program = pocket_at(-3, -6, "F9000")}), "cut-power"), "");
+}
+
 TEST(Plausibility, StockTooHigh) {
   EXPECT_EQ(
       roof("[40, 20, 2]", "[40, 20, 22]", "stock-top"),
