@@ -189,7 +189,11 @@ void add_tools(std::vector<ToolProposal>& known, const std::vector<ToolProposal>
     const auto same = std::ranges::find(known, tool.number, &ToolProposal::number);
     if (same == known.end())
       known.push_back(tool);
-    else if (static_cast<std::size_t>(same - known.begin()) >= before)
+    else if (static_cast<std::size_t>(same - known.begin()) < before)
+      continue;
+    else if (same->what == tool.what && may_be_same(*same, tool))
+      complete(*same, tool);  // a cutter in several formats
+    else
       same->doubt = fmt::format("{} is another cutter of this number: {}", tool.from, tool.what);
   }
 }

@@ -275,6 +275,13 @@ TEST(ToolLibraries, SayThatANumberHasSeveralCutters) {
   EXPECT_EQ(known[1].what, "mill 2");
   EXPECT_EQ(known[1].doubt, "lib, tool 4 is another cutter of this number: mill 3");
   library[1].diameter_mm = 3;
+  library[3].what = library[2].what;  // the same cutter in two formats of a folder
+  library[3].flutes = 4;
+  std::vector<ToolProposal> twice;
+  add_tools(twice, {library[2], library[3]});
+  ASSERT_EQ(twice.size(), 1u);
+  EXPECT_EQ(twice[0].doubt, "");
+  EXPECT_EQ(twice[0].flutes, 4);
   add_tools(known, library);
   EXPECT_EQ(known[0].doubt, "lib, tool 1 has another cutter of this number: mill 0");
 }
