@@ -10,6 +10,31 @@
 
 namespace camber::checks {
 
+namespace {
+
+/// A stock roughed along the path (allowance_mm) of whose top nothing is left anywhere, however high it was.
+void look_at_roughed_top(const Evidence& e, Diagnostics& diagnostics) {
+  constexpr double kOdd_mm = 3, kOfDiameter = 0.5;
+  if (!e.survey || e.job.stock.allowance_mm <= 0 || e.survey->allowance_mm3 <= 0) return;
+  double least = kOdd_mm;
+  for (const ToolWork& work : e.tools) least = std::max(least, kOfDiameter * work.tool->diameter_mm);
+  const removal::HeightMap& left = e.survey->machined;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < left.rows(); ++j)
+    for (std::size_t i = 0; i < left.columns(); ++i) highest = std::max(highest, left.at(i, j));
+  const double top = e.stock->max_mm.z();
+  if (top - highest < least) return;
+  diagnostics.add(e.at_job(
+      Severity::warning,
+      fmt::format("the stock's top is at Z{:g}, but nothing of it is left above Z{:.2f}: the cut before, of which "
+                  "allowance_mm = {:g} tells, takes {:.1f} mm off everywhere; a stock of which the path leaves the top "
+                  "somewhere was expected (is it too high?)",
+                  top, highest, e.job.stock.allowance_mm, top - highest),
+      "stock-top"));
+}
+
+}  // namespace
+
 void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
   if (!e.stock || e.elsewhere || e.program.rotary) return;
   constexpr double kSame_mm = 0.05;
@@ -24,7 +49,7 @@ void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
     where = i;
   }
   const double top = e.stock->max_mm.z();
-  if (!std::isfinite(highest) || highest >= top - kSame_mm) return;
+  if (!std::isfinite(highest) || highest >= top - kSame_mm) return look_at_roughed_top(e, diagnostics);
   diagnostics.add(
       e.at_move(Severity::error, where,
                 fmt::format("the program rises to Z{:g} at most, but the stock's top is at Z{:g}; a program "

@@ -39,13 +39,6 @@ std::optional<double> size_of(const std::string& text) {
   return std::nullopt;
 }
 
-bool is_end_mill(const std::string& words) {
-  return has(words, "END MILL") || has(words, "ENDMILL") || has(words, "END-MILL") || has(words, "E.M.") ||
-         has(words, "FEM") || has(words, "SCHAFT") || has(words, "ROUTER") || has(words, "CUT BIT") ||
-         has(words, "DOWNCUT") || has(words, "UPCUT") || has(words, "COMPRESSION") || has(words, "O FLUTE") ||
-         has(words, "SLOT DRILL");
-}
-
 /// The word alone, not as a part of another one.
 bool has_word(const std::string& words, const std::string& pattern) {
   static thread_local std::map<std::string, std::regex> known;
@@ -54,6 +47,13 @@ bool has_word(const std::string& words, const std::string& pattern) {
                                 ? at->second
                                 : known.emplace(pattern, "(?:^|[^A-Z])(?:" + pattern + ")(?:[^A-Z]|$)").first->second;
   return std::regex_search(words, regex);
+}
+
+bool is_end_mill(const std::string& words) {
+  return has(words, "END MILL") || has(words, "ENDMILL") || has(words, "END-MILL") || has(words, "E.M.") ||
+         has(words, "FEM") || has_word(words, "EM") || has(words, "SCHAFT") || has(words, "ROUTER") ||
+         has(words, "CUT BIT") || has(words, "DOWNCUT") || has(words, "UPCUT") || has(words, "COMPRESSION") ||
+         has(words, "O FLUTE") || has(words, "SLOT DRILL");
 }
 
 /// "90 V GROOVE", "V-BIT", "VBIT", "ENGRAVE 30": named by the angle between their sides.
@@ -204,7 +204,8 @@ void read_diameter(const std::string& words, bool inch, ToolProposal& tool) {
 void read_corner(const std::string& words, bool inch, ToolProposal& tool) {
   for (const char* pattern :
        {R"((?:\bCR\s*=\s*|\bRAD[\s.=-]+|\bRADIUS\s*[=:-]\s*|\bR\s*=\s*)NUM)", R"(NUM\s*RAD(?:IUS)?\b)",
-        R"(\bD\s?[\d.]+\s?R\s?NUM)", R"(\b(?:BULL|TORUS|TORIC)\w*[ A-Z]*\bR\s?NUM)"})
+        R"(\bD\s?[\d.]+\s?R\s?NUM)", R"((?:\d\.\d*|\d\s*MM)\s+R\s?NUM(?=[\s|]|$))",
+        R"(\b(?:BULL|TORUS|TORIC)\w*[ A-Z]*\bR\s?NUM)"})
     if (!tool.corner_radius_mm) tool.corner_radius_mm = find_size(words, pattern, inch);
 }
 
@@ -224,7 +225,9 @@ void read_lengths(const std::string& words, bool inch, ToolProposal& tool) {
 }  // namespace
 
 ToolProposal tool_of_words(std::string_view text, bool inch) {
-  static const std::regex kFlutes(R"((\d+)\s*-?\s*FL(?:UTES?|T)?\b)");
+  // "4 FLUTE", "4FL"; in Europe "Z4", which is no height: those have a point, a sign or zero.
+  static const std::regex kFlutes(R"((\d+)\s*-?\s*FL(?:UTES?|T)?\b)"),
+      kTeeth(R"((?:^|[\s|,-])Z\s?=?\s?(\d{1,2})(?=[\s|,]|$))");
   constexpr double kCarbide_GPa = 600, kSteel_GPa = 210;
   std::string words = upper(text);
   std::ranges::replace(words, '_', ' ');
@@ -235,7 +238,8 @@ ToolProposal tool_of_words(std::string_view text, bool inch) {
   read_diameter(words, inch, tool);
   if (tool.diameter_mm && *tool.diameter_mm <= 0) tool.diameter_mm.reset();
   std::smatch m;
-  if (std::regex_search(words, m, kFlutes) && m[1].length() <= 2 && std::stoi(m[1].str()) > 0)
+  if ((std::regex_search(words, m, kFlutes) || (tool.type && std::regex_search(words, m, kTeeth))) &&
+      m[1].length() <= 2 && std::stoi(m[1].str()) > 0)
     tool.flutes = std::stoi(m[1].str());
   if (tool.type != ToolType::bull) tool.corner_radius_mm.reset();
   read_lengths(words, inch, tool);

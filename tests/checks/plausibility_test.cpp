@@ -264,6 +264,17 @@ TEST(Plausibility, StockTooHigh) {
       "of the stock was expected (is the stock too high, or its zero another one?) [stock-top]\n");
 }
 
+TEST(Plausibility, StockTooHighOfAProgramThatRisesAboveIt) {
+  EXPECT_EQ(
+      roof("[40, 20, 2]", "[40, 20, 12]", "stock-top"),
+      "job.toml: warning: the stock's top is at Z12, but nothing of it is left above Z0.67: the cut before, of which "
+      "allowance_mm = 0.3 tells, takes 11.3 mm off everywhere; a stock of which the path leaves the top somewhere "
+      "was expected (is it too high?) [stock-top]\n");
+  EXPECT_EQ(roof("[40, 20, 2]", "[40, 20, 3]", "stock-top"), "");
+  // Part of the top stays: a region of a larger block.
+  EXPECT_EQ(roof("[40, 20, 2]", "[40, 40, 12]", "stock-top"), "");
+}
+
 TEST(Plausibility, AllowanceInAnotherUnit) {
   EXPECT_EQ(
       roof("allowance_mm = 0.3", "allowance_mm = 1.5", "allowance-size"),

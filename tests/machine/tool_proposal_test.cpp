@@ -42,6 +42,11 @@ TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
       {" 10. END_MILL_SPHER DIA. 10. ", false, ToolType::ball, 10.0, none},
       {" #99 DRILL", true, ToolType::drill, none, none},
       {" 6MM 4 FLUTE BALL", false, ToolType::ball, 6.0, none},
+      // Setters' own words: the corner behind the diameter, "EM".
+      {"TOOL 1 = 12.0 R2.0 ENDMILL 4FL", false, ToolType::bull, 12.0, 2.0},
+      {"12MM R1 FRAESER", false, ToolType::bull, 12.0, 1.0},
+      {"EM 10MM Z4 LOC22 OAL72", false, ToolType::flat, 10.0, none},
+      {"8. R4 BALL", false, ToolType::ball, 8.0, none},
       {" 3/0 BALL", false, ToolType::ball, none, none},
       {"", false, std::nullopt, none, none},
   };
@@ -58,6 +63,10 @@ TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
     }
   }
   EXPECT_EQ(tool_of_words(" 6MM 4 FLUTE BALL", false).flutes, 4);
+  EXPECT_EQ(tool_of_words("EM 10MM Z4 LOC22", false).flutes, 4);
+  EXPECT_EQ(tool_of_words("FRAISE D16 Z=3", false).flutes, 3);
+  EXPECT_EQ(tool_of_words("FRAISE D16 Z-3", false).flutes, std::nullopt) << "a height";
+  EXPECT_EQ(tool_of_words("FRAISE D16 Z3.", false).flutes, std::nullopt) << "a height";
   EXPECT_EQ(tool_of_words(" 1/2\" DIA. 2 FLUTE STUBBY E.M.", true).flutes, 2);
   EXPECT_EQ(tool_of_words(" 1/4\" X 45\xb0 CHAMFER MILL", true).point_angle_deg, 90);
   EXPECT_EQ(tool_of_words(" 1/4\" X 90\xc2\xb0 SPOT DRILL", true).point_angle_deg, 90);
