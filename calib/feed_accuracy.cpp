@@ -204,7 +204,7 @@ void add_residuals(FeedAccuracy& result, const Record& traced, const Window& w, 
     count_residual(result.by_state[static_cast<std::size_t>(state)], 100 * (b.speed[i] - a.speed[i]) / feed_mm_per_s);
     for (int axis = 0; axis < 3 && !in_degrees; ++axis)
       count_residual(result.by_axis[static_cast<std::size_t>(axis)],
-          100 * (b.velocity[i][axis] - a.velocity[i][axis]) / feed_mm_per_s);
+                     100 * (b.velocity[i][axis] - a.velocity[i][axis]) / feed_mm_per_s);
   }
 }
 

@@ -27,8 +27,8 @@ std::vector<Part> parts_of(const nc::Interpretation& program);
 /// rotary axes move), and moves in inverse time (G93) follow each other in one part.
 std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Machine& machine);
 
-/// What the machine does at a place of the path. Corner: within 20 ms of the change to another block; arc: inside an arc;
-/// feed: at 98 % of the programmed feed or more; ramp: between them.
+/// What the machine does at a place of the path. Corner: within 20 ms of the change to another block; arc: inside an
+/// arc; feed: at 98 % of the programmed feed or more; ramp: between them.
 enum class PathState { corner, arc, ramp, feed };
 inline constexpr std::array<const char*, 4> kPathStates{"corner", "arc", "ramp", "programmed feed"};
 

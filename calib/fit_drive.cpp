@@ -28,6 +28,7 @@ constexpr double kSamplingFraction = 0.05;  // of the sample distance: what an i
 constexpr double kMaxJitter = 0.1;          // of the sample distance
 constexpr double kPositionScale = 1000;     // residuals in um, or thousandths of a degree
 constexpr std::size_t kFewestSamples = 50;
+constexpr double kPieceS = 0.5;  // errors further apart than this have nothing in common
 constexpr double kTriedFeedForward = 0.5;
 constexpr double kTraceStepMm = 1e-4;  // what traces are rounded to
 
@@ -308,23 +309,29 @@ std::size_t judged_samples(const std::vector<Slice>& slices, bool held_out) {
   return n;
 }
 
-/// Sandwich over the slices, and what a shift by a fraction of the sample distance would do.
+/// Sandwich over pieces of the slices, with the correction for few of them, and what a shift by a fraction of the sample
+/// distance would do.
 void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vector<double>& residuals,
                 const ceres::CRSMatrix& jacobian) {
   const int n = c.model.count();
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n), middle = normal;
-  int row = 0;
+  int row = 0, pieces = 0;
   for (const Slice& s : slices) {
     if (s.held_out) continue;
-    Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
     const int end = row + static_cast<int>(s.command.size() - s.warm_up);
-    for (; row < end; ++row) {
-      const Eigen::Map<const Eigen::VectorXd> j(&jacobian.values[static_cast<std::size_t>(jacobian.rows[row])], n);
-      normal += j * j.transpose();
-      score += j * residuals[static_cast<std::size_t>(row)];
+    const int piece = static_cast<int>(samples_in(kPieceS, s.period_s));
+    while (row < end) {
+      Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
+      for (const int stop = std::min(end, row + piece); row < stop; ++row) {
+        const Eigen::Map<const Eigen::VectorXd> j(&jacobian.values[static_cast<std::size_t>(jacobian.rows[row])], n);
+        normal += j * j.transpose();
+        score += j * residuals[static_cast<std::size_t>(row)];
+      }
+      middle += score * score.transpose();
+      ++pieces;
     }
-    middle += score * score.transpose();
   }
+  middle *= static_cast<double>(pieces) / std::max(1, pieces - n);
   c.error.fill(INFINITY);
   const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * normal * scale.asDiagonal());

@@ -28,12 +28,12 @@ constexpr std::size_t kRestSamples = 20;  // a command that stands for longer re
 constexpr double kBelowHeld = 0.99;       // of a speed that an axis holds: a limit below it is wrong
 constexpr double kSamePeriod = 0.02;      // two periods that differ by less are one
 constexpr std::uint32_t kMaxBlocksApart = 60;
-constexpr double kSameWindow = 0.3;        // two estimates of one window differ by less than this fraction of it
-constexpr int kListIterations = 6;         // for each value of a list
-constexpr double kMoves = 2e-3;            // mm or degrees between two samples
-constexpr double kNoLengthMm = 1e-9;       // rounding of numbers, not a move
+constexpr double kSameWindow = 0.3;         // two estimates of one window differ by less than this fraction of it
+constexpr int kListIterations = 6;          // for each value of a list
+constexpr double kMoves = 2e-3;             // mm or degrees between two samples
+constexpr double kNoLengthMm = 1e-9;        // rounding of numbers, not a move
 constexpr std::size_t kKeptStations = 250;  // of a part, for the page
-constexpr double kSettledFraction = 1e-3;  // gain of cost under which a richer law is not worth it
+constexpr double kSettledFraction = 1e-3;   // gain of cost under which a richer law is not worth it
 
 /// The usual values of this kind of control for keys that the start file leaves out and the traces may not determine.
 void set_control_defaults(machine::Control& control) {
@@ -500,7 +500,8 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
   std::size_t count = 0;
   for (const FeedRun& run : runs) {
     const std::vector<Part> parts = parts_of(run.program, result.machine);
-    RunAccuracy accuracy{run.program_name, feed_accuracy(run.trace, run.program, result.machine, parts, {.kept_stations = kKeptStations})};
+    RunAccuracy accuracy{run.program_name, feed_accuracy(run.trace, run.program, result.machine, parts,
+                                                         {.kept_stations = kKeptStations})};
     if (!run.trace.line.empty()) {
       std::size_t seen = 0;
       for (const Part& part : parts) {

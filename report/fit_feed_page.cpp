@@ -56,9 +56,9 @@ std::string laws_card(const FitFeedResult& result) {
   std::vector<std::vector<std::string>> rows;
   for (const calib::JudgedCornerLaw& law : result.laws)
     rows.push_back({law.name, percent_text(law.held_out_percent, 3), fmt::format("{:.3f}", law.held_out_cost)});
-  return fit_card("Corner laws on the held-out parts",
-                  fit_table({"law", "time", "cost"}, rows) + "<p class=\"note\">Taken: " + html_text(result.law) +
-                      ".</p>\n");
+  return fit_card(
+      "Corner laws on the held-out parts",
+      fit_table({"law", "time", "cost"}, rows) + "<p class=\"note\">Taken: " + html_text(result.law) + ".</p>\n");
 }
 
 /// Over all runs, each weighted by its stations.
@@ -94,9 +94,10 @@ std::string residual_table(const std::string& name, const std::array<calib::Spee
 }
 
 std::string residuals_card(const FitFeedResult& result) {
-  const std::string by_state = residual_table("where", pooled(result, &calib::FeedAccuracy::by_state), calib::kPathStates);
-  const std::string by_axis = residual_table("axis", pooled(result, &calib::FeedAccuracy::by_axis),
-                                             std::array<const char*, 3>{"x", "y", "z"});
+  const std::string by_state =
+      residual_table("where", pooled(result, &calib::FeedAccuracy::by_state), calib::kPathStates);
+  const std::string by_axis =
+      residual_table("axis", pooled(result, &calib::FeedAccuracy::by_axis), std::array<const char*, 3>{"x", "y", "z"});
   return by_state.empty() ? "" : fit_card("Residuals of the speed", by_state + by_axis);
 }
 
@@ -111,10 +112,10 @@ std::vector<const PartAccuracy*> worst_parts(const calib::FeedAccuracy& accuracy
 std::string lines_text(const calib::Part& part) { return fmt::format("{}-{}", part.line_first, part.line_last); }
 
 std::string run_card(const calib::RunAccuracy& run) {
-  std::string body = fmt::format("<p>{} s measured, {} s modelled ({} %); path speed rms {} % of F.</p>\n",
-                                 number_text(run.accuracy.time_trace_s, 2), number_text(run.accuracy.time_model_s, 2),
-                                 number_text(run.accuracy.time_error_percent, 2),
-                                 number_text(run.accuracy.speed_rms_percent, 2));
+  std::string body =
+      fmt::format("<p>{} s measured, {} s modelled ({} %); path speed rms {} % of F.</p>\n",
+                  number_text(run.accuracy.time_trace_s, 2), number_text(run.accuracy.time_model_s, 2),
+                  number_text(run.accuracy.time_error_percent, 2), number_text(run.accuracy.speed_rms_percent, 2));
   for (const PartAccuracy* part : worst_parts(run.accuracy, kDrawnParts)) body += part_speed_svg(*part);
   std::vector<std::vector<std::string>> rows;
   for (const PartAccuracy* p : worst_parts(run.accuracy, kListedParts))

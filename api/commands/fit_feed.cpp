@@ -133,9 +133,8 @@ template <std::size_t n>
 Json residuals_json(const std::array<calib::SpeedResidual, n>& residuals, const std::array<const char*, n>& names) {
   Json list = Json::array();
   for (std::size_t i = 0; i < n; ++i)
-    list.push_back({{"where", names[i]},
-                    {"stations", residuals[i].stations},
-                    {"speed_rms_percent", residuals[i].rms_percent}});
+    list.push_back(
+        {{"where", names[i]}, {"stations", residuals[i].stations}, {"speed_rms_percent", residuals[i].rms_percent}});
   return list;
 }
 
