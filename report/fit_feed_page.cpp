@@ -78,27 +78,31 @@ std::array<calib::SpeedResidual, n> pooled(const FitFeedResult& result,
   return all;
 }
 
-template <std::size_t n>
-std::string residual_table(const std::string& name, const std::array<calib::SpeedResidual, n>& residuals,
-                           const std::array<const char*, n>& names) {
+std::string by_place_table(const FitFeedResult& result) {
+  const auto residuals = pooled(result, &calib::FeedAccuracy::by_state);
   std::size_t stations = 0;
   for (const calib::SpeedResidual& r : residuals) stations += r.stations;
   std::vector<std::vector<std::string>> rows;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals[i].stations == 0) continue;
+    const double share = static_cast<double>(residuals[i].stations) / static_cast<double>(stations);
+    rows.push_back({calib::kPathStates[i], percent_text(100 * share, 1), percent_text(residuals[i].rms_percent, 2)});
+  }
+  return rows.empty() ? "" : fit_table({"where", "of the way", "speed rms, of F"}, rows);
+}
+
+std::string by_axis_table(const FitFeedResult& result) {
+  const auto residuals = pooled(result, &calib::FeedAccuracy::by_axis);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < residuals.size(); ++i)
     if (residuals[i].stations > 0)
-      rows.push_back(
-          {names[i],
-           percent_text(100.0 * static_cast<double>(residuals[i].stations) / static_cast<double>(stations), 1),
-           percent_text(residuals[i].rms_percent, 2)});
-  return rows.empty() ? "" : fit_table({name, "of the stations", "speed rms, of F"}, rows);
+      rows.push_back({std::string(1, "XYZ"[i]), percent_text(residuals[i].rms_percent, 2)});
+  return rows.empty() ? "" : fit_table({"axis", "speed rms, of F"}, rows);
 }
 
 std::string residuals_card(const FitFeedResult& result) {
-  const std::string by_state =
-      residual_table("where", pooled(result, &calib::FeedAccuracy::by_state), calib::kPathStates);
-  const std::string by_axis =
-      residual_table("axis", pooled(result, &calib::FeedAccuracy::by_axis), std::array<const char*, 3>{"x", "y", "z"});
-  return by_state.empty() ? "" : fit_card("Residuals of the speed", by_state + by_axis);
+  const std::string body = by_place_table(result) + by_axis_table(result);
+  return body.empty() ? "" : fit_card("Residuals of the speed", body);
 }
 
 std::vector<const PartAccuracy*> worst_parts(const calib::FeedAccuracy& accuracy, std::size_t count) {
