@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <sstream>
 
 #include "base/numbers.h"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double kPartPercent = 0.5;
 constexpr double kMoves = 2e-3;  // mm or degrees between two samples
+constexpr double kCornerS = 0.02;
+constexpr double kAtFeed = 0.98;  // of the programmed feed
 
 /// What trace and model have in common.
 struct Record {
@@ -22,6 +25,7 @@ struct Record {
   std::vector<Vec3> command_mm, actual_mm;
   std::vector<std::uint32_t> line;
   std::vector<Vec3> rotary_actual_deg{};  ///< of programs with rotary motion
+  std::vector<char> in_degrees{};         ///< where F counts degrees; empty: nowhere
 };
 
 /// Replaces the actual positions by what F counts, sample by sample: X Y Z, the tip in the part's frame, or degrees.
@@ -30,9 +34,11 @@ void set_feed_points(Record& r, const nc::Interpretation& program, const machine
   const std::vector<LineFeed> lines = feeds_of_lines(program, machine);
   const feedmodel::JointMap map(machine, program);
   const LineFeed* line = nullptr;
+  r.in_degrees.assign(r.line.size(), 0);
   for (std::size_t k = 0; k < r.line.size(); ++k) {
     if (r.line[k] < lines.size() && lines[r.line[k]].turn) line = &lines[r.line[k]];
     if (!line) continue;
+    r.in_degrees[k] = line->rotary_alone;
     if (line->rotary_alone)
       r.actual_mm[k] = r.rotary_actual_deg[k];
     else if (line->turn->tip_control)
@@ -122,27 +128,94 @@ void drop_incomplete(const ServoTrace& trace, std::vector<Window>& windows) {
     }
 }
 
-double speed_at(const Record& r, const Window& w, std::size_t k, std::size_t half) {
+Vec3 velocity_at(const Record& r, const Window& w, std::size_t k, std::size_t half) {
   const std::size_t from = std::max(k, w.first + half) - half, to = std::min(k + half, w.end - 1);
-  return to > from ? (r.actual_mm[to] - r.actual_mm[from]).norm() / (static_cast<double>(to - from) * r.period_s) : 0;
+  if (to <= from) return Vec3::Zero();
+  return (r.actual_mm[to] - r.actual_mm[from]) / (static_cast<double>(to - from) * r.period_s);
 }
 
-/// Speed at stations that lie evenly over the fraction of the length that the axes really went.
-std::vector<double> speed_profile(const Record& r, const Window& w, const FeedAccuracyOptions& options) {
+/// At stations that lie evenly over the fraction of the length that the axes really went.
+struct Profile {
+  std::vector<double> speed;
+  std::vector<Vec3> velocity;
+  std::vector<std::size_t> sample;  ///< the one before the station
+};
+
+Profile profile_of(const Record& r, const Window& w, const FeedAccuracyOptions& options) {
   std::vector<double> length{0.0};
   for (std::size_t k = w.first + 1; k < w.end; ++k)
     length.push_back(length.back() + (r.actual_mm[k] - r.actual_mm[k - 1]).norm());
   const auto half = static_cast<std::size_t>(std::max(1L, std::lround(options.speed_window_s / r.period_s / 2)));
-  std::vector<double> speeds(options.stations);
+  Profile out;
   std::size_t k = 0;
   for (std::size_t i = 0; i < options.stations; ++i) {
     const double s = (static_cast<double>(i) + 0.5) / static_cast<double>(options.stations) * length.back();
     while (k + 2 < length.size() && length[k + 1] < s) ++k;
     const double step = length[k + 1] - length[k];
     const double u = step > 0 ? (s - length[k]) / step : 0.0;
-    speeds[i] = (1 - u) * speed_at(r, w, w.first + k, half) + u * speed_at(r, w, w.first + k + 1, half);
+    const Vec3 a = velocity_at(r, w, w.first + k, half), b = velocity_at(r, w, w.first + k + 1, half);
+    out.speed.push_back((1 - u) * a.norm() + u * b.norm());
+    out.velocity.emplace_back((1 - u) * a + u * b);
+    out.sample.push_back(w.first + k);
   }
-  return speeds;
+  return out;
+}
+
+// --- residuals by kind and axis ---------------------------------------------------------------------------------
+
+/// By the 1-based number of a line.
+std::vector<char> arc_lines(const nc::Interpretation& program) {
+  std::vector<char> arcs;
+  for (const nc::Move& move : program.moves) {
+    if (arcs.size() <= move.block + 1) arcs.resize(move.block + 2, 0);
+    arcs[move.block + 1] = move.kind == nc::MoveKind::arc;
+  }
+  return arcs;
+}
+
+bool near_a_corner(const Record& r, const Window& w, std::size_t k) {
+  const auto reach = static_cast<std::size_t>(std::max(1L, std::lround(kCornerS / r.period_s)));
+  const auto another = [&](std::size_t i) { return r.line[i] != 0 && r.line[k] != 0 && r.line[i] != r.line[k]; };
+  return another(std::max(k, w.first + reach) - reach) || another(std::min(k + reach, w.commanded_end - 1));
+}
+
+PathState state_at(const Record& r, const Window& w, const std::vector<char>& arcs, std::size_t k, double feed_share) {
+  if (near_a_corner(r, w, k)) return PathState::corner;
+  if (r.line[k] < arcs.size() && arcs[r.line[k]]) return PathState::arc;
+  return feed_share >= kAtFeed ? PathState::feed : PathState::ramp;
+}
+
+/// `rms_percent` is a sum of squares until take_roots().
+void count_residual(SpeedResidual& residual, double percent) {
+  ++residual.stations;
+  residual.rms_percent += percent * percent;
+}
+
+void take_roots(std::span<SpeedResidual> residuals) {
+  for (SpeedResidual& r : residuals)
+    if (r.stations > 0) r.rms_percent = std::sqrt(r.rms_percent / static_cast<double>(r.stations));
+}
+
+void add_residuals(FeedAccuracy& result, const Record& traced, const Window& w, const std::vector<char>& arcs,
+                   double feed_mm_per_s, const Profile& a, const Profile& b) {
+  const bool in_degrees = !traced.in_degrees.empty() && traced.in_degrees[w.first];
+  for (std::size_t i = 0; i < a.speed.size(); ++i) {
+    const PathState state = state_at(traced, w, arcs, a.sample[i], a.speed[i] / feed_mm_per_s);
+    count_residual(result.by_state[static_cast<std::size_t>(state)], 100 * (b.speed[i] - a.speed[i]) / feed_mm_per_s);
+    for (int axis = 0; axis < 3 && !in_degrees; ++axis)
+      count_residual(result.by_axis[static_cast<std::size_t>(axis)],
+                     100 * (b.velocity[i][axis] - a.velocity[i][axis]) / feed_mm_per_s);
+  }
+}
+
+SpeedProfiles kept_speeds(const Profile& a, const Profile& b, std::size_t kept) {
+  SpeedProfiles out;
+  for (std::size_t i = 0; i < kept; ++i) {
+    const std::size_t at = (2 * i + 1) * a.speed.size() / (2 * kept);
+    out.traced.push_back(static_cast<float>(a.speed[at]));
+    out.model.push_back(static_cast<float>(b.speed[at]));
+  }
+  return out;
 }
 
 double percentile_95(std::vector<double> values) {
@@ -295,7 +368,7 @@ FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpret
     part.time_trace_s = static_cast<double>(windows[p].commanded_end - windows[p].first) * traced.period_s;
     for (std::size_t line = parts[p].line_first; line <= parts[p].line_last && line < line_s.size(); ++line)
       part.time_model_s += line_s[line];
-    std::vector<double> errors = speed_profile(traced, windows[p], options);
+    std::vector<double> errors = profile_of(traced, windows[p], options).speed;
     for (double& e : errors) e = 100 * std::abs(1 - e / parts[p].feed_mm_per_s);
     part.speed_rms_percent = root_mean_square(errors);
     part.speed_p95_percent = percentile_95(errors);
@@ -325,6 +398,7 @@ FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& pr
   auto in_trace = windows_of(traced, parts);
   const auto in_model = windows_of(model, parts);
   drop_incomplete(trace, in_trace);
+  const std::vector<char> arcs = arc_lines(program);
   std::vector<double> all;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (in_trace[p].end < in_trace[p].first + 3 || in_model[p].end < in_model[p].first + 3) continue;
@@ -332,9 +406,12 @@ FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& pr
     part.part = parts[p];
     part.time_trace_s = static_cast<double>(in_trace[p].commanded_end - in_trace[p].first) * traced.period_s;
     part.time_model_s = static_cast<double>(in_model[p].commanded_end - in_model[p].first) * model.period_s;
-    const auto a = speed_profile(traced, in_trace[p], options), b = speed_profile(model, in_model[p], options);
-    std::vector<double> errors(a.size());
-    for (std::size_t i = 0; i < a.size(); ++i) errors[i] = 100 * std::abs(b[i] - a[i]) / parts[p].feed_mm_per_s;
+    const Profile a = profile_of(traced, in_trace[p], options), b = profile_of(model, in_model[p], options);
+    std::vector<double> errors(a.speed.size());
+    for (std::size_t i = 0; i < errors.size(); ++i)
+      errors[i] = 100 * std::abs(b.speed[i] - a.speed[i]) / parts[p].feed_mm_per_s;
+    add_residuals(result, traced, in_trace[p], arcs, parts[p].feed_mm_per_s, a, b);
+    part.speeds = kept_speeds(a, b, std::min(options.kept_stations, options.stations));
     part.speed_rms_percent = root_mean_square(errors);
     part.speed_p95_percent = percentile_95(errors);
     result.part_time_error_percent += 100 * std::abs(part.time_model_s / part.time_trace_s - 1);
@@ -344,6 +421,8 @@ FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& pr
   if (!result.parts.empty()) result.part_time_error_percent /= static_cast<double>(result.parts.size());
   result.speed_rms_percent = root_mean_square(all);
   result.speed_p95_percent = percentile_95(all);
+  take_roots(result.by_state);
+  take_roots(result.by_axis);
   if (result.parts.size() == parts.size() || result.parts.empty()) return result;
   // The trace has a piece of the program: the times of its whole parts are what can be compared.
   result.time_trace_s = result.time_model_s = 0;

@@ -1,5 +1,6 @@
 #pragma once
 // Comparison of the feed model with a servo trace: time and path speed of the actual axes, part by part.
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,11 +27,28 @@ std::vector<Part> parts_of(const nc::Interpretation& program);
 /// rotary axes move), and moves in inverse time (G93) follow each other in one part.
 std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Machine& machine);
 
+/// What the machine does at a place of the path. Corner: within 20 ms of the change to another block; arc: inside an
+/// arc; feed: at 98 % of the programmed feed or more; ramp: between them.
+enum class PathState { corner, arc, ramp, feed };
+inline constexpr std::array<const char*, 4> kPathStates{"corner", "arc", "ramp", "programmed feed"};
+
+/// Path speeds of a part, mm/s (degrees/s where F counts degrees), at stations evenly over the fraction of its length.
+struct SpeedProfiles {
+  std::vector<float> traced, model;
+};
+
 struct PartAccuracy {
   Part part;
   double time_trace_s = 0, time_model_s = 0;  ///< commanded
   double speed_rms_percent = 0;               ///< over the stations, in % of the programmed feed
   double speed_p95_percent = 0;
+  SpeedProfiles speeds{};  ///< FeedAccuracyOptions::kept_stations of them
+};
+
+/// RMS of predicted minus traced speed, in % of the programmed feed.
+struct SpeedResidual {
+  std::size_t stations = 0;
+  double rms_percent = 0;
 };
 
 struct FeedAccuracy {
@@ -40,10 +58,13 @@ struct FeedAccuracy {
   double speed_rms_percent = 0;        ///< over the stations of all parts
   double speed_p95_percent = 0;
   std::vector<PartAccuracy> parts;
+  std::array<SpeedResidual, kPathStates.size()> by_state{};  ///< path speed; by PathState of the trace
+  std::array<SpeedResidual, 3> by_axis{};  ///< speed of x, y, z in what F counts; without parts in degrees
 };
 
 struct FeedAccuracyOptions {
   std::size_t stations = 2000;    ///< a part, evenly over the fraction of path length
+  std::size_t kept_stations = 0;  ///< of them, for a picture; at most `stations`
   double speed_window_s = 0.004;  ///< speeds are taken over this time: a trace is rounded to 0.1 um
 };
 

@@ -28,6 +28,9 @@ constexpr double kSamplingFraction = 0.05;  // of the sample distance: what an i
 constexpr double kMaxJitter = 0.1;          // of the sample distance
 constexpr double kPositionScale = 1000;     // residuals in um, or thousandths of a degree
 constexpr std::size_t kFewestSamples = 50;
+constexpr double kPieceS = 0.5;  // errors further apart than this have nothing in common
+constexpr double kTriedFeedForward = 0.5;
+constexpr double kTraceStepMm = 1e-4;  // what traces are rounded to
 
 /// The numbers of a drive, in the order in which models take them up.
 enum Number { log_gain, log_lag, feed_forward, acceleration, dead_time, backlash, kNumbers };
@@ -56,6 +59,7 @@ struct Model {
   Free free{true};
   double filter_s = 0;
   double lead_s = 0;  // of the feed forward before the equation
+  Numbers fixed{};    // those that are not free
 
   int count() const { return static_cast<int>(std::count(free.begin(), free.end(), true)); }
 };
@@ -280,7 +284,7 @@ class DriveResiduals {
   }
 
   Numbers with_free(const double* free) const {
-    Numbers p{};
+    Numbers p = model_.fixed;
     for (std::size_t i = 0; i < kNumbers; ++i)
       if (model_.free[i]) p[i] = *free++;
     return p;
@@ -305,23 +309,29 @@ std::size_t judged_samples(const std::vector<Slice>& slices, bool held_out) {
   return n;
 }
 
-/// Sandwich over the slices, and what a shift by a fraction of the sample distance would do.
+/// Sandwich over pieces of the slices, with the correction for few of them, and what a shift by a fraction of the sample
+/// distance would do.
 void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vector<double>& residuals,
                 const ceres::CRSMatrix& jacobian) {
   const int n = c.model.count();
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n), middle = normal;
-  int row = 0;
+  int row = 0, pieces = 0;
   for (const Slice& s : slices) {
     if (s.held_out) continue;
-    Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
     const int end = row + static_cast<int>(s.command.size() - s.warm_up);
-    for (; row < end; ++row) {
-      const Eigen::Map<const Eigen::VectorXd> j(&jacobian.values[static_cast<std::size_t>(jacobian.rows[row])], n);
-      normal += j * j.transpose();
-      score += j * residuals[static_cast<std::size_t>(row)];
+    const int piece = static_cast<int>(samples_in(kPieceS, s.period_s));
+    while (row < end) {
+      Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
+      for (const int stop = std::min(end, row + piece); row < stop; ++row) {
+        const Eigen::Map<const Eigen::VectorXd> j(&jacobian.values[static_cast<std::size_t>(jacobian.rows[row])], n);
+        normal += j * j.transpose();
+        score += j * residuals[static_cast<std::size_t>(row)];
+      }
+      middle += score * score.transpose();
+      ++pieces;
     }
-    middle += score * score.transpose();
   }
+  middle *= static_cast<double>(pieces) / std::max(1, pieces - n);
   c.error.fill(INFINITY);
   const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(scale.asDiagonal() * normal * scale.asDiagonal());
@@ -431,6 +441,17 @@ std::string name_of(const Model& model) {
   return text;
 }
 
+/// With half of the speed fed forward and the other numbers fitted again the trace is explained as well: it shows how
+/// far the axis is behind, gain / (1 - feed forward), and neither of both.
+bool hides_feed_forward(const std::vector<Slice>& slices, const Candidate& best) {
+  if (best.model.free[feed_forward]) return false;
+  Model model = best.model;
+  model.fixed[feed_forward] = kTriedFeedForward;
+  Numbers start = best.p;
+  start[log_gain] += std::log(1 - kTriedFeedForward);
+  return solve(slices, model, start).held_out_rms < kNearlyAsGood * best.held_out_rms + kTraceStepMm;
+}
+
 DriveFit result_of(const Candidate& c) {
   DriveFit fit;
   fit.moved = true;
@@ -534,9 +555,12 @@ DriveFit fit_drive(const std::vector<const ServoTrace*>& all, int axis, const Dr
   std::vector<const ServoTrace*> traces;
   for (const ServoTrace* trace : all)
     if (moves(*trace, axis, options.moved_mm)) traces.push_back(trace);
-  std::vector<Slice> slices = slices_of(traces, axis, options);
+  const std::vector<Slice> slices = slices_of(traces, axis, options);
   if (judged_samples(slices, false) < kFewestSamples) return {};
-  return result_of(DriveSearch(std::move(slices), options).best());
+  const Candidate best = DriveSearch(slices, options).best();
+  DriveFit fit = result_of(best);
+  if (hides_feed_forward(slices, best)) fit.feed_forward_percent = {0, INFINITY};
+  return fit;
 }
 
 double drive_rms_mm(const std::vector<const ServoTrace*>& all, int axis, const machine::Axis& model) {

@@ -28,11 +28,12 @@ constexpr std::size_t kRestSamples = 20;  // a command that stands for longer re
 constexpr double kBelowHeld = 0.99;       // of a speed that an axis holds: a limit below it is wrong
 constexpr double kSamePeriod = 0.02;      // two periods that differ by less are one
 constexpr std::uint32_t kMaxBlocksApart = 60;
-constexpr double kSameWindow = 0.3;        // two estimates of one window differ by less than this fraction of it
-constexpr int kListIterations = 6;         // for each value of a list
-constexpr double kMoves = 2e-3;            // mm or degrees between two samples
-constexpr double kNoLengthMm = 1e-9;       // rounding of numbers, not a move
-constexpr double kSettledFraction = 1e-3;  // gain of cost under which a richer law is not worth it
+constexpr double kSameWindow = 0.3;         // two estimates of one window differ by less than this fraction of it
+constexpr int kListIterations = 6;          // for each value of a list
+constexpr double kMoves = 2e-3;             // mm or degrees between two samples
+constexpr double kNoLengthMm = 1e-9;        // rounding of numbers, not a move
+constexpr std::size_t kKeptStations = 250;  // of a part, for the page
+constexpr double kSettledFraction = 1e-3;   // gain of cost under which a richer law is not worth it
 
 /// The usual values of this kind of control for keys that the start file leaves out and the traces may not determine.
 void set_control_defaults(machine::Control& control) {
@@ -499,7 +500,8 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
   std::size_t count = 0;
   for (const FeedRun& run : runs) {
     const std::vector<Part> parts = parts_of(run.program, result.machine);
-    RunAccuracy accuracy{run.program_name, feed_accuracy(run.trace, run.program, result.machine, parts, {})};
+    RunAccuracy accuracy{run.program_name, feed_accuracy(run.trace, run.program, result.machine, parts,
+                                                         {.kept_stations = kKeptStations})};
     if (!run.trace.line.empty()) {
       std::size_t seen = 0;
       for (const Part& part : parts) {
@@ -590,7 +592,15 @@ void set_drive(Axis& a, std::vector<FitParameter>& parameters, const std::string
                     : "not determined by the traces; start value kept (run the polygon programs of camber protocol)",
          determined});
   };
-  add("position_gain_per_s", drive.gain_per_s, a.position_gain_per_s, drive.gain_per_s.value, 1, "1/s");
+  FittedValue gain = drive.gain_per_s;
+  if (std::isinf(drive.feed_forward_percent.std_error)) {
+    // The lag at a steady speed shows gain / (1 - feed forward): with the start file's feed forward it stays the same.
+    // All of the speed fed forward would leave no lag, which the trace has.
+    if (a.feed_forward_percent >= 100) a.feed_forward_percent = 0;
+    const double left = 1 - a.feed_forward_percent / 100;
+    gain = {gain.value * left, gain.std_error * left};
+  }
+  add("position_gain_per_s", gain, a.position_gain_per_s, gain.value, 1, "1/s");
   add("velocity_lag_ms", drive.velocity_lag_s, a.velocity_lag_s, drive.velocity_lag_s.value, 1000, "ms");
   add("feed_forward_percent", drive.feed_forward_percent, a.feed_forward_percent,
       std::clamp(drive.feed_forward_percent.value, 0.0, 100.0), 1, "%");

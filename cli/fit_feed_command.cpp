@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "machine/machine.h"
 #include "report/block_time_plot.h"
+#include "report/fit_feed_page.h"
 
 namespace camber::cli {
 namespace {
@@ -126,13 +127,18 @@ void print(const calib::StretchFit& fit) {
   fmt::print("{}\n", fit.message);
 }
 
-/// Prints, writes the machine and the figures, and says how it went.
+std::string page_of(const FitFeedResult& result) { return report::fit_feed_page(result); }
+std::string page_of(const calib::StretchFit&) { return {}; }
+
+/// Prints, writes the machine, the figures and the page, and says how it went.
 int finish(const api::FeedFit& fit, const FitFeedArguments& arguments, const GlobalOptions& options) {
   return std::visit(
       [&](const auto& result) -> int {
         if (!options.quiet) print(result);
         write_file(arguments.output, machine::to_toml(result.machine));
         if (!arguments.json.empty()) write_file(arguments.json, api::fit_json(fit));
+        if (const std::string page = page_of(result); !arguments.report.empty() && !page.empty())
+          write_file(arguments.report, page);
         if (!result.converged) print_error(result.message);
         return result.converged ? kDone : kNumbersDidNotWorkOut;
       },
@@ -191,6 +197,9 @@ int run_fit_feed(const FitFeedArguments& arguments, const GlobalOptions& options
   const api::FeedRuns runs = api::read_runs(traced_programs(arguments), arguments.columns, start, diagnostics);
   settle(diagnostics, options);
   print_translation(start.translation, options);
+  if (!arguments.report.empty() && !runs.any_lines())
+    fail_on_file(arguments.traces.front(), "has no speeds by line; --report needs a servo trace that names its lines",
+                 "fit-report");
   if (!arguments.block_time_plot.empty()) plot_block_time(runs, arguments, options);
   ProgressLine progress(options, "fitting");
   const api::FeedFit fit = api::fit_runs(runs, start, {.update = arguments.update});

@@ -15,6 +15,7 @@ struct FitFeedArguments {
   std::string output;           ///< fitted.toml
   std::string json;             ///< empty: none
   std::string block_time_plot;  ///< empty: none
+  std::string report;           ///< page; empty: none
   bool update = false;          ///< refine the machine file: its corner law stands
   bool leave_one_out = false;   ///< judge each servo trace by a fit on the others as well
   nc::InterpreterOptions interpreter;

@@ -263,6 +263,8 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   command
       ->add_option("--block-time-plot", arguments->block_time_plot, "speed against block length of the saturated runs")
       ->type_name("P.svg");
+  command->add_option("--report", arguments->report, "page: measured and modelled speed, residuals, parameters")
+      ->type_name("R.html");
   command->add_flag(
       "--update", arguments->update,
       "refine the machine file: its corner law stands, its numbers change where the traces determine them");
@@ -280,7 +282,7 @@ void add_fit_feed(CLI::App& app, const GlobalOptions& options, Action& chosen) {
       if (options.effective_config) return print_effective_machine(arguments->machine, options);
       std::vector<std::string> inputs = arguments->programs;  // a machine file may be fitted in its place
       inputs.insert(inputs.end(), arguments->traces.begin(), arguments->traces.end());
-      check_outputs({arguments->output, arguments->json, arguments->block_time_plot}, inputs);
+      check_outputs({arguments->output, arguments->json, arguments->block_time_plot, arguments->report}, inputs);
       return run_fit_feed(*arguments, options);
     };
   });

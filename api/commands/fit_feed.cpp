@@ -127,6 +127,17 @@ Json error_json(const calib::FitError& e) {
           {"speed_p95_percent", e.speed_p95_percent}};
 }
 
+constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
+
+template <std::size_t n>
+Json residuals_json(const std::array<calib::SpeedResidual, n>& residuals, const std::array<const char*, n>& names) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < n; ++i)
+    list.push_back(
+        {{"where", names[i]}, {"stations", residuals[i].stations}, {"speed_rms_percent", residuals[i].rms_percent}});
+  return list;
+}
+
 Json parameters_json(const std::vector<calib::FitParameter>& parameters) {
   Json list = Json::array();
   for (const calib::FitParameter& p : parameters)
@@ -204,7 +215,9 @@ Json report_of(const FitFeedResult& result) {
                               {"time_model_s", run.accuracy.time_model_s},
                               {"time_error_percent", run.accuracy.time_error_percent},
                               {"speed_rms_percent", run.accuracy.speed_rms_percent},
-                              {"speed_p95_percent", run.accuracy.speed_p95_percent}});
+                              {"speed_p95_percent", run.accuracy.speed_p95_percent},
+                              {"by_place", residuals_json(run.accuracy.by_state, calib::kPathStates)},
+                              {"by_axis", residuals_json(run.accuracy.by_axis, kAxisNames)}});
   for (const calib::LoggedTime& t : result.logged)
     report["logged"].push_back({{"program", t.program_name},
                                 {"line_first", t.part.line_first},

@@ -51,6 +51,19 @@ std::string trace_error(std::string_view trace) {
   return run.err;
 }
 
+TEST(BadInput, FitFeedDrawsNoSpeedsOfATableOfTimes) {
+  const TempFolder folder;
+  folder.write("p.nc", "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG1 X1. F600\nM2\n");
+  folder.write("machine.toml", "[axis.x]\nmax_velocity_mm_per_min = 6000\n");
+  folder.write("t.csv", "first_line,last_line,time_s\n3,3,0.2\n");
+  const auto run =
+      run_camber(folder, "fit-feed --program p.nc --trace t.csv --machine machine.toml -o f.toml --report f.html");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.err,
+            "t.csv: error: has no speeds by line; --report needs a servo trace that names its lines [fit-report]\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "f.toml"));
+}
+
 TEST(BadInput, MissingAndEmptyFiles) {
   const TempFolder folder;
   folder.write("empty.nc", "");
