@@ -309,8 +309,8 @@ std::size_t judged_samples(const std::vector<Slice>& slices, bool held_out) {
   return n;
 }
 
-/// Sandwich over pieces of the slices, with the correction for few of them, and what a shift by a fraction of the sample
-/// distance would do.
+/// Sandwich over pieces of the slices, with the correction for few of them, and what a shift by a fraction of the
+/// sample distance would do.
 void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vector<double>& residuals,
                 const ceres::CRSMatrix& jacobian) {
   const int n = c.model.count();

@@ -52,7 +52,7 @@ void look_at_chips(const Evidence& e, Diagnostics& diagnostics) {
     if (chip >= usual.least && chip <= usual.greatest) continue;
     const bool grave = chip > kMeaningless * usual.greatest || chip < usual.least / kMeaningless;
     diagnostics.add(e.at_move(
-        grave ? Severity::error : Severity::warning, work.first_move,
+        grave ? e.error_of(work.number, {"flutes", "diameter_mm"}, false) : Severity::warning, work.first_move,
         fmt::format("{} feeds {:.2g} mm per tooth, {:.2g} of its diameter of {:g} mm; {:.2g} to {:.2g} mm was expected "
                     "(S, F, flutes, diameter_mm?)",
                     cutting_text(work), chip, chip / work.tool->diameter_mm, work.tool->diameter_mm, usual.least,
@@ -119,14 +119,14 @@ void look_at_power(const Evidence& e, Diagnostics& diagnostics) {
     const double bend = force * deflection::beam_of(*work.tool).compliance_mm_per_N(0, depth);
     const double motor = std::min(kMost_W, 3 * e.job.machine.spindle.power_W);
     if (power > motor)
-      diagnostics.add(e.at_move(Severity::error, work.deepest_move,
+      diagnostics.add(e.at_move(e.error_of(work.number, {"type", "diameter_mm"}, true), work.deepest_move,
                                 fmt::format("T{} needs {:.3g} kW for its chips; no more than {:.3g} kW was expected "
                                             "(depth of the cut, [material], F?)",
                                             work.number, power / 1000, motor / 1000),
                                 "cut-power"));
     else if (bend > kBroken * work.tool->diameter_mm && simulate::slenderness(*work.tool) <= simulate::kMaxSlenderness)
       diagnostics.add(e.at_move(
-          Severity::error, work.deepest_move,
+          e.error_of(work.number, {"type", "diameter_mm", "overhang_mm"}, true), work.deepest_move,
           fmt::format(
               "T{} would bend by {:.2g} mm under the mean force of its chips, {:.3g} N, and break; a cut that a "
               "cutter of {:g} mm with overhang_mm = {:g} stands was expected",

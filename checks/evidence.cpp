@@ -4,7 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
+#include "machine/assumptions.h"
 #include "machine/force_law.h"
 #include "simulate/pieces.h"
 #include "simulate/setup_checks.h"
@@ -110,7 +113,8 @@ Evidence::Evidence(const machine::Job& of_job, const simulate::SimulatedProgram&
       program(of_program),
       said(machine::tools_in_comments(of_program.text.source, uses_inches(of_program.moves))),
       stock(simulate::stock_box(of_job)),
-      specific_force_MPa(specific_force(of_job.material)) {
+      specific_force_MPa(specific_force(of_job.material)),
+      assumed(machine::assumed_keys(of_job.path)) {
   if (stock) {
     Diagnostics of_places;
     simulate::check_places(program.text.source.name(), simulate::places_of(job, program, *stock), of_places);
@@ -134,13 +138,25 @@ Evidence::Evidence(const machine::Job& of_job)
     : job(of_job),
       program(no_program()),
       stock(simulate::stock_box(of_job)),
-      specific_force_MPa(specific_force(of_job.material)) {
+      specific_force_MPa(specific_force(of_job.material)),
+      assumed(machine::assumed_keys(of_job.path)) {
   for (const auto& [number, tool] : job.tools) {
     ToolWork& work = tools.emplace_back();
     work.number = number;
     work.tool = &tool;
     work.mills = tool.type != machine::ToolType::drill;
   }
+}
+
+Severity Evidence::error_of(int tool, std::initializer_list<std::string_view> keys, bool of_stock) const {
+  const auto is_assumed = [&](const std::string& table, std::string_view key) {
+    const auto found = assumed.find(table);
+    return found != assumed.end() && std::ranges::find(found->second, key) != found->second.end();
+  };
+  const std::string table = fmt::format("tool.{}", tool);
+  const bool doubtful = (of_stock && is_assumed("stock", "box_mm")) ||
+                        std::ranges::any_of(keys, [&](std::string_view key) { return is_assumed(table, key); });
+  return doubtful ? Severity::warning : Severity::error;
 }
 
 Diagnostic Evidence::at_job(Severity severity, std::string message, std::string check) const {

@@ -1,9 +1,11 @@
 #pragma once
 // What the rules look at, worked out once.
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "machine/job.h"
@@ -59,6 +61,7 @@ struct Evidence {
   std::optional<simulate::HeightSurvey> survey;
   bool elsewhere = false;         ///< path and stock lie apart, or their units do (simulate::check_places)
   double specific_force_MPa = 0;  ///< tangential, of chips of 0.1 mm
+  std::map<std::string, std::vector<std::string>> assumed;  ///< keys by table (machine/assumptions.h)
 
   Evidence(const machine::Job& job, const simulate::SimulatedProgram& program);
   /// Of a job whose program is yet to be made: all of its tools.
@@ -66,6 +69,9 @@ struct Evidence {
   Evidence(const Evidence&) = delete;
   Evidence& operator=(const Evidence&) = delete;
 
+  /// An error, but a warning where one of these keys of [tool.N] or, with `of_stock`, the blank is only assumed: what
+  /// nobody gave refuses no program.
+  Severity error_of(int tool, std::initializer_list<std::string_view> keys, bool of_stock) const;
   Diagnostic at_job(Severity severity, std::string message, std::string check) const;
   Diagnostic at_move(Severity severity, std::uint32_t move, std::string message, std::string check) const;
 };

@@ -51,7 +51,7 @@ void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
   const double top = e.stock->max_mm.z();
   if (!std::isfinite(highest) || highest >= top - kSame_mm) return look_at_roughed_top(e, diagnostics);
   diagnostics.add(
-      e.at_move(Severity::error, where,
+      e.at_move(e.error_of(0, {}, true), where,
                 fmt::format("the program rises to Z{:g} at most, but the stock's top is at Z{:g}; a program "
                             "that comes clear of the stock was expected (is the stock too high, or its zero "
                             "another one?)",
@@ -69,7 +69,7 @@ void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
   const nc::Extents tips = simulate::tip_extents(e.program.moves, e.program.selected, e.program.holes);
   const Vec3 &lo = e.stock->min_mm, &hi = e.stock->max_mm;
   diagnostics.add(e.at_move(
-      beside > kMeaningless * all ? Severity::error : Severity::warning,
+      beside > kMeaningless * all ? e.error_of(0, {}, true) : Severity::warning,
       static_cast<std::uint32_t>(longest - e.survey->moves.begin()),
       fmt::format(
           "{:.0f} % of the cutting path runs beside or above the stock: the tip cuts from X{:.2f} Y{:.2f} Z{:.2f} "

@@ -151,9 +151,9 @@ TEST(FitDrive, TakesTracesThatBeginOnTheWay) {
   }
 }
 
-/// Three stretches, each shorter than a slice, so that the third one is held out: it comes from a drive of another gain.
-/// The gain is that of the first two, and the error that is held out shows the difference. No richer model is tried,
-/// which might explain the third one by chance.
+/// Three stretches, each shorter than a slice, so that the third one is held out: it comes from a drive of another
+/// gain. The gain is that of the first two, and the error that is held out shows the difference. No richer model is
+/// tried, which might explain the third one by chance.
 TEST(FitDrive, NeverFitsWhatIsHeldOut) {
   const ServoTrace own = followed({.gain = 30}), other = followed({.gain = 60});
   constexpr std::size_t kSamples = 1800;

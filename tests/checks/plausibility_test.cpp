@@ -188,6 +188,19 @@ TEST(Plausibility, SpeedATenthAndFeedATenth) {
             "mm; 0.006 to 0.36 mm was expected (S, F, flutes, diameter_mm?) [chip-load]\n");
 }
 
+TEST(Plausibility, WhatIsAssumedRefusesNoProgram) {
+  const std::string slow = replaced(roof_rows(), "S8000", "S80");
+  const auto starts = [&](std::string_view key, const std::string& check) {
+    const std::string given = fmt::format("flutes = 2\nassumed = [\"{}\"]", key);
+    return of_check(said({.job = replaced(kRoof, "flutes = 2", given), .program = slow}), check).substr(0, 12);
+  };
+  EXPECT_EQ(starts("flutes", "chip-load"), "p.nc:6: warn");
+  EXPECT_EQ(starts("diameter_mm", "chip-load"), "p.nc:6: warn");
+  EXPECT_EQ(starts("overhang_mm", "chip-load"), "p.nc:6: erro");
+  const std::string high = replaced(kRoof, "[40, 20, 2]]", "[40, 20, 32]]\nassumed = [\"box_mm\"]");
+  EXPECT_NE(said({.job = high}).find(": warning: the program rises to Z20 at most"), std::string::npos);
+}
+
 TEST(Plausibility, CoefficientsInOtherUnits) {
   EXPECT_EQ(
       roof("ktc_MPa = 1860.0", "ktc_MPa = 270000.0", "material-values"),
