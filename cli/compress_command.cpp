@@ -56,6 +56,9 @@ std::string text_report(const Figures& before, const Figures& after, const repat
   out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs; largest kink at an arc {:.1f} degrees",
                      result.max_deviation_mm, result.runs.size(), deg_from_rad(result.max_kink_rad));
   if (result.max_kink_rad > 0) out += fmt::format(", line {} of the new program", result.max_kink_block + 1);
+  if (result.max_edge_rad > 0)
+    out += fmt::format("; a kink of {:.1f} degrees that the given program has stays in line {}",
+                       deg_from_rad(result.max_edge_rad), result.max_edge_block + 1);
   return out + "\n";
 }
 
@@ -75,10 +78,13 @@ std::string json_report(const Figures& before, const Figures& after, const repat
                  {"max_kink_deg", deg_from_rad(result.max_kink_rad)},
                  {"rms_kink_deg", deg_from_rad(result.rms_kink_rad)},
                  {"max_kink_line", nullptr},
+                 {"max_edge_deg", deg_from_rad(result.max_edge_rad)},
+                 {"max_edge_line", nullptr},
                  {"runs", result.runs.size()},
                  {"time_before_s", nullptr},
                  {"time_after_s", nullptr}};
   if (result.max_kink_rad > 0) report["max_kink_line"] = result.max_kink_block + 1;
+  if (result.max_edge_rad > 0) report["max_edge_line"] = result.max_edge_block + 1;
   if (!why.empty()) report["unchanged_because"] = why;
   if (before.time_s) {
     report["time_before_s"] = *before.time_s;

@@ -69,7 +69,7 @@ class Compressor {
       }
       if (again) continue;
       join_modes(runs, rewrites);
-      take(std::move(rewrites), runs, smooth_kinks_of(polyline, options, chain));
+      take(std::move(rewrites), runs, kinks_beside_arcs(polyline, options, chain));
     }
   }
 
@@ -77,6 +77,7 @@ class Compressor {
     if (joints_ > 0) out_.rms_kink_rad = std::sqrt(kink_squares_ / static_cast<double>(joints_));
     place_after(out_.runs, replacements_);
     if (joints_ > 0) out_.max_kink_block = block_of(worst_kink_);
+    if (out_.max_edge_rad > 0) out_.max_edge_block = block_of(worst_edge_);
     out_.text = style_.rules->renumbered(nc::replace_blocks(program_, replacements_));
     return std::move(out_);
   }
@@ -157,6 +158,13 @@ class Compressor {
       replacements_.push_back(std::move(r.text));
     }
     for (const Kink& kink : kinks) {
+      if (kink.of_path) {
+        if (kink.angle_rad > out_.max_edge_rad) {
+          out_.max_edge_rad = kink.angle_rad;
+          worst_edge_ = place_of(kink, runs, rewrites, first);
+        }
+        continue;
+      }
       if (kink.angle_rad > out_.max_kink_rad) {
         out_.max_kink_rad = kink.angle_rad;
         worst_kink_ = place_of(kink, runs, rewrites, first);
@@ -197,7 +205,7 @@ class Compressor {
   FitMemory memory_;
   Compression out_;
   std::vector<nc::BlockReplacement> replacements_;
-  KinkPlace worst_kink_;
+  KinkPlace worst_kink_, worst_edge_;
   double kink_squares_ = 0;
   std::size_t joints_ = 0;
 };

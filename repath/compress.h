@@ -97,9 +97,11 @@ struct Compression {
   std::string text;
   std::vector<RewrittenRun> runs;    ///< those that became fewer blocks
   double max_deviation_mm = 0;       ///< over all of them
-  double max_kink_rad = 0;           ///< at joints beside an arc that are no corners of the input
+  double max_kink_rad = 0;           ///< at joints beside an arc that are smooth in the input
   std::uint32_t max_kink_block = 0;  ///< of the new text: the one that begins there
   double rms_kink_rad = 0;           ///< over these joints
+  double max_edge_rad = 0;           ///< of the kinks beside an arc that the program itself has and that are no corners
+  std::uint32_t max_edge_block = 0;  ///< of the new text, likewise
 };
 
 /// Linear in the number of blocks. Does not throw on a program that was read and interpreted without errors.

@@ -43,13 +43,13 @@ std::vector<bool> edges_of(const Polyline& path, const FitOptions& options) {
                     {.min_turn_rad = kEdgeRad, .times_beside = kEdgeTimesBeside, .leg_mm = corner_leg_mm(options)});
 }
 
-std::vector<Kink> smooth_kinks_of(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain) {
+std::vector<Kink> kinks_beside_arcs(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain) {
   const std::vector<bool> corners = corners_of(path, options), edges = edges_of(path, options);
   const std::vector<double> kinks = kinks_of(path, chain);
   std::vector<Kink> out;
   for (std::size_t k = 0; k < kinks.size(); ++k)
-    if ((chain[k].arc || chain[k + 1].arc) && !corners[chain[k].last] && !edges[chain[k].last])
-      out.push_back({kinks[k], chain[k].last});
+    if ((chain[k].arc || chain[k + 1].arc) && !corners[chain[k].last])
+      out.push_back({kinks[k], chain[k].last, edges[chain[k].last]});
   return out;
 }
 

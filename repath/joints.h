@@ -76,9 +76,10 @@ std::vector<bool> edges_of(const Polyline& path, const FitOptions& options);
 struct Kink {
   double angle_rad = 0;
   std::uint32_t point = 0;  ///< of the path
+  bool of_path = false;     ///< at an edge of the path
 };
-/// The kinks at the joints beside an arc that are neither corners nor edges of the path.
-std::vector<Kink> smooth_kinks_of(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain);
+/// The kinks at the joints beside an arc that are no corners of the path.
+std::vector<Kink> kinks_beside_arcs(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain);
 
 /// Where joints of a chain kink too much, as after rounding, arcs give way to the blocks as they were, until none does.
 void give_way(const Joints& joints, std::vector<Primitive>& chain);

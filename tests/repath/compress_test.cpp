@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/units.h"
 #include "repath/compress.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/path_distance.h"
@@ -188,6 +189,26 @@ TEST(Compress, NamesTheLineOfTheLargestKink) {
   EXPECT_TRUE(lines[out.max_kink_block].starts_with("G3") || lines[out.max_kink_block].starts_with("G2") ||
               lines[out.max_kink_block].starts_with("X"))
       << lines[out.max_kink_block];
+}
+
+TEST(Compress, NamesTheKinkThatTheProgramItselfHas) {
+  // The first line behind a rapid meets a circle of 20 mm at an angle that is no corner; nothing beside it is smooth.
+  const auto met_at = [](double angle_deg) {
+    std::string text =
+        fmt::format("G21 G90 G17\nG0 X{:.4f} Y-5. Z0.\nG1 X20. Y0. F800\n", 20 - 5 * std::tan(rad_from_deg(angle_deg)));
+    for (int i = 1; i <= 90; ++i)
+      text += fmt::format("X{:.4f} Y{:.4f}\n", 20 * std::cos(rad_from_deg(i)), 20 * std::sin(rad_from_deg(i)));
+    const Read r = nc::read_clean(text + "M30\n");
+    return compress(r.program, r.moves, {.tolerance_mm = 0.005});
+  };
+  const Compression out = met_at(8);
+  EXPECT_NEAR(deg_from_rad(out.max_edge_rad), 8, 0.1);
+  std::stringstream in(out.text);
+  std::string line;
+  for (std::uint32_t i = 0; i <= out.max_edge_block; ++i) std::getline(in, line);
+  EXPECT_TRUE(line.starts_with("G3 X0. Y20.")) << out.text;
+  EXPECT_EQ(met_at(0).max_edge_rad, 0);
+  EXPECT_EQ(met_at(45).max_edge_rad, 0) << "a corner";
 }
 
 TEST(Compress, AnotherPlaneGetsLinesOnlyUnlessItMaySwitch) {
