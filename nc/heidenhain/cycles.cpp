@@ -269,8 +269,8 @@ void Klartext::run_cycle_call(const Statement& s) {
     while (at.more()) {
       const std::size_t begin = at.offset();
       const char c = at.peek();
-      if (at.accept_prefix("FMAX")) continue;
       at.advance();
+      if (c == 'F' && (at.accept("MAX") || at.accept("AUTO"))) continue;
       if (c == 'M') {
         if (const auto code = at.integer()) functions.push_back({*code, std::nullopt, begin});
       } else if (c == 'F') {

@@ -227,6 +227,19 @@ TEST(Siemens, ModesOfTheControl) {
   EXPECT_EQ(state(4).path_control, PathControl::exact_stop);
 }
 
+TEST(Siemens, ToleranceOfThePathByCtol) {
+  const Read r = read_siemens(
+      "G64\nG1 X0 Y0 Z0 F100\nCYCLE832(0.01,_FINISH,1)\nX1\nCTOL=0.02\nX2\nCTOL=-1\nX3\n"
+      "CYCLE832(0.05,2,1) \nX4\nCYCLE832()\nX5\nCOMPCAD CTOL=0.03\nX6\n");
+  EXPECT_EQ(r.messages, Messages{});
+  const auto state = [&](std::size_t i) { return r.moves.state_of(r.moves.moves[i]); };
+  EXPECT_DOUBLE_EQ(state(1).blend_tolerance_mm, 0.01);
+  EXPECT_DOUBLE_EQ(state(2).blend_tolerance_mm, 0.02);
+  EXPECT_DOUBLE_EQ(state(3).blend_tolerance_mm, 0.01);
+  EXPECT_DOUBLE_EQ(state(5).blend_tolerance_mm, -1);
+  EXPECT_DOUBLE_EQ(state(6).blend_tolerance_mm, 0.03);
+}
+
 TEST(Siemens, ToolsByNameHaveNumbersOfTheirOwn) {
   const Read r = read_siemens("T=\"MILL\" M6\nG0 X0 Y0 Z0\nT1\nM6\nX1\nT=\"MILL\"\nM6\nX2\n");
   EXPECT_EQ(r.messages, Messages{});
