@@ -15,10 +15,12 @@ struct Counts {
 };
 
 std::vector<Counts> programs() {
-  return {{"hypermill_tnc.H", 6, 2, 0, {1, 2}}, {"fusion_tnc.H", 6, 3, 3, {1, 3}},    {"powermill_tnc.H", 3, 0, 0, {5}},
-          {"solidcam_tnc.H", 4, 4, 0, {2}},     {"mastercam_tnc.H", 3, 2, 3, {1}},    {"nx_tnc.H", 4, 1, 2, {3}},
-          {"hypermill_840d.mpf", 4, 2, 0, {1, 2}}, {"fusion_840d.mpf", 5, 2, 3, {1}},  {"powermill_840d.mpf", 2, 0, 0, {5}},
-          {"nx_840d.mpf", 2, 2, 0, {1}},        {"mastercam_840d.mpf", 3, 1, 9, {1}}, {"solidcam_840d.mpf", 9, 0, 0, {1}}};
+  return {{"hypermill_tnc.H", 6, 2, 0, {1, 2}},    {"fusion_tnc.H", 6, 3, 3, {1, 3}},
+          {"powermill_tnc.H", 3, 0, 0, {5}},       {"solidcam_tnc.H", 4, 4, 0, {2}},
+          {"mastercam_tnc.H", 3, 2, 3, {1}},       {"nx_tnc.H", 4, 1, 2, {3}},
+          {"hypermill_840d.mpf", 4, 2, 0, {1, 2}}, {"fusion_840d.mpf", 5, 2, 3, {1}},
+          {"powermill_840d.mpf", 2, 0, 0, {5}},    {"nx_840d.mpf", 2, 2, 0, {1}},
+          {"mastercam_840d.mpf", 3, 1, 9, {1}},    {"solidcam_840d.mpf", 9, 0, 0, {1}}};
 }
 
 Counts counted(const Interpretation& program) {
