@@ -15,8 +15,9 @@ namespace {
 
 // Sources: Takata = M. Takata, thesis on the prediction of cycle time, 1999, tables 2.1 and 2.6. Yan & Shirase 1997.
 // KAKEN = KAKEN report on deflection-compensated CAM. linear 1999 = American Machinist, "Leaning toward linear", March
-// 1999, and Design News, "Machine tools turn to linear motors", 20 September 1999. grbl = grbl 1.1, settings. Values
-// marked "estimate" have no published source.
+// 1999, and Design News, "Machine tools turn to linear motors", 20 September 1999. grbl = grbl 1.1, settings. TNC
+// manuals = Heidenhain, technical manuals of the controls, and cycle 32 in the user's manuals. MD = machine data of the
+// 840D sl, Detailed Machine Data Description 03/2010. Values marked "estimate" have no published source.
 
 constexpr std::string_view kRouter = R"([control]
 period_ms = 1.0                         # 0.5 to 4: estimate; step pulses are planned in segments of this order
@@ -207,6 +208,94 @@ max_rpm = 18000.0                       # 12000 to 24000: data sheets
 chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
 )";
 
+constexpr std::string_view kTnc640 = R"([control]
+dialect = "heidenhain"
+period_ms = 3.0                         # 1 to 6: TNC 640, iTNC 530: path interpolation each 3 ms
+block_time_ms = 0.5                     # 0.5 to 4: TNC 640: 0.5 ms for a 3-D line; older iTNC 530 3.6
+corner = { law = "blend", tolerance_mm = 0.02 }  # 0.005 to 0.05: estimate; tolerance without cycle 32, a machine parameter
+
+[control.mode.cycle32]
+corner = { law = "blend", tolerance_mm = 0.02 }  # 0.005 to 0.05: T of cycle 32 counts
+acceleration_law = "bell"
+bell_time_ms = 25.0                     # 10 to 60: estimate; twice acceleration over jerk
+
+[axis.x]
+max_velocity_mm_per_min = 36000.0       # 20000 to 60000: data sheets of machines with this control
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
+position_gain_per_s = 80.0              # 50 to 150: estimate; feed-forward control
+feed_forward_percent = 98.0             # 90 to 100: estimate; feed-forward control is the rule
+stiffness_N_per_um = 50.0               # 20 to 150: estimate
+
+[axis.y]
+max_velocity_mm_per_min = 36000.0       # 20000 to 60000: data sheets of machines with this control
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
+position_gain_per_s = 80.0              # 50 to 150: estimate; feed-forward control
+feed_forward_percent = 98.0             # 90 to 100: estimate; feed-forward control is the rule
+stiffness_N_per_um = 50.0               # 20 to 150: estimate
+
+[axis.z]
+max_velocity_mm_per_min = 36000.0       # 20000 to 60000: data sheets of machines with this control
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
+position_gain_per_s = 80.0              # 50 to 150: estimate; feed-forward control
+feed_forward_percent = 98.0             # 90 to 100: estimate; feed-forward control is the rule
+stiffness_N_per_um = 60.0               # 20 to 150: estimate
+
+[cycle]
+acceleration_law = "bell"
+bell_time_ms = 25.0                     # 10 to 60: estimate; twice acceleration over jerk
+
+[spindle]
+max_rpm = 18000.0                       # 8000 to 30000: data sheets
+
+[tool_change]
+chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
+)";
+
+constexpr std::string_view kSinumerik840d = R"([control]
+dialect = "siemens"
+period_ms = 4.0                         # 1 to 12: MD10070 x MD10050: interpolation each 2 to 8 ms
+block_time_ms = 1.0                     # 0.3 to 4: estimate; 840D sl by its processor, 810D and 828D more
+corner = { law = "speed_difference", speed_difference_mm_per_min = 1440 }  # 300 to 5000: MD32310 = 1.2: 1.2 x acceleration x period
+
+[control.mode.cycle832]
+corner = { law = "blend", tolerance_mm = 0.1 }  # 0.01 to 0.2: tolerance of CYCLE832 counts; else MD33100: 0.1
+acceleration_law = "bell"
+bell_time_ms = 30.0                     # 10 to 80: estimate
+
+[axis.x]
+max_velocity_mm_per_min = 40000.0       # 20000 to 60000: data sheets of machines with this control
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 1000 to 10000: estimate; MD32300
+position_gain_per_s = 66.0              # 16 to 150: MD32200: 1 to 9 (m/min)/mm
+feed_forward_percent = 98.0             # 0 to 100: estimate; FFWON is the rule, FFWOF: 0
+stiffness_N_per_um = 50.0               # 20 to 150: estimate
+
+[axis.y]
+max_velocity_mm_per_min = 40000.0       # 20000 to 60000: data sheets of machines with this control
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 1000 to 10000: estimate; MD32300
+position_gain_per_s = 66.0              # 16 to 150: MD32200: 1 to 9 (m/min)/mm
+feed_forward_percent = 98.0             # 0 to 100: estimate; FFWON is the rule, FFWOF: 0
+stiffness_N_per_um = 50.0               # 20 to 150: estimate
+
+[axis.z]
+max_velocity_mm_per_min = 40000.0       # 20000 to 60000: data sheets of machines with this control
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 1000 to 10000: estimate; MD32300
+position_gain_per_s = 66.0              # 16 to 150: MD32200: 1 to 9 (m/min)/mm
+feed_forward_percent = 98.0             # 0 to 100: estimate; FFWON is the rule, FFWOF: 0
+stiffness_N_per_um = 60.0               # 20 to 150: estimate
+
+[spindle]
+max_rpm = 18000.0                       # 8000 to 30000: data sheets
+
+[tool_change]
+chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
+)";
+
 constexpr std::array kPresets{
     MachinePreset{"router", "a router for wood, plastics and light alloys, stepper motors", kRouter},
     MachinePreset{"vmc-40", "a vertical machining centre, ball screws, taper 40", kVmc40},
@@ -214,6 +303,8 @@ constexpr std::array kPresets{
     MachinePreset{"hsc-die-mould", "a high speed machine for dies and moulds", kHscDieMould},
     MachinePreset{"five-axis-trunnion", "a five-axis machining centre, tilting trunnion (A) and rotary table (C)",
                   kFiveAxisTrunnion},
+    MachinePreset{"tnc-640", "a machining centre with a Heidenhain TNC 640 or iTNC 530", kTnc640},
+    MachinePreset{"sinumerik-840d", "a machining centre with a Sinumerik 840D sl or 828D", kSinumerik840d},
 };
 
 }  // namespace

@@ -269,8 +269,8 @@ void Klartext::run_cycle_call(const Statement& s) {
     while (at.more()) {
       const std::size_t begin = at.offset();
       const char c = at.peek();
-      if (at.accept_prefix("FMAX")) continue;
       at.advance();
+      if (c == 'F' && (at.accept("MAX") || at.accept("AUTO"))) continue;
       if (c == 'M') {
         if (const auto code = at.integer()) functions.push_back({*code, std::nullopt, begin});
       } else if (c == 'F') {
@@ -390,6 +390,10 @@ void Klartext::drill_hole(const Hole& h) {
   const auto dwell = [&](double seconds) {
     if (seconds > 0) cycle_move(MoveKind::dwell, programmed(), 0, seconds);
   };
+  if (h.depth_mm < 0 && place_[static_cast<std::size_t>(normal)] == Place::machine) {
+    go(MoveKind::rapid, top, 0);  // from a machine coordinate; the height of the cycle is absolute
+    settle(static_cast<std::uint8_t>(1U << normal));
+  }
   prepare_cutting("a cycle", 0);
   if (h.depth_mm == 0) return;
   if (h.depth_mm > 0)

@@ -430,6 +430,7 @@ class Reader {
     Cursor blank = at;
     blank.advance();
     if (blank.accept("MAX")) return whole(letter::kRapid, blank.offset() - begin);
+    if (blank.accept("AUTO")) return whole(letter::kAutoFeed, blank.offset() - begin);
     const char next = at.behind(1);
     if (next == 'U') return value_word(at, begin, letter::kFeedPerTurn, 2);
     if (next == 'Z') return value_word(at, begin, letter::kFeedPerTooth, 2);

@@ -64,11 +64,13 @@ class BlockRunner : public SystemValues {
   /// A pattern of holes: the places, in program coordinates. `visit` runs behind each move.
   void run_pattern(const CycleCall& call, const BlockPlace& place, const std::function<void()>& visit);
   void set_stock(const CycleCall& call, std::uint32_t block);
+  void leave_for_machine_place(char axis, const std::string& name, std::uint32_t offset);
   void go_home(const WordRow& row, std::uint32_t offset, const BlockPlace& place);
   /// SETMS(n), OFFN=, RNDM=
   void set_main_spindle(int number) { main_spindle_ = number; }
   int main_spindle() const { return main_spindle_; }
   void set_offset_normal(double value) { offset_normal_mm_ = value * unit_mm(); }
+  void set_contour_tolerance(double tolerance);
   void set_modal_rounding(double value) { modal_rounding_mm_ = value * unit_mm(); }
   void orient_spindle() { add_event(EventKind::spindle_orient, 0); }
   void set_frame_variable(const std::string& name, const std::vector<double>& indexes,
@@ -239,8 +241,8 @@ class BlockRunner : public SystemValues {
   int first_cut_offset_ = 0;
 
   bool cycle832_ = false, compressor_ = false;
-  double cycle832_tolerance_mm_ = -1;
-  int blending_ = 60;  ///< 60, 64, 641 ...
+  double cycle832_tolerance_mm_ = -1, contour_tolerance_mm_ = -1;  ///< negative: not given
+  int blending_ = 60;                                              ///< 60, 64, 641 ...
   double adis_mm_ = 0;
 
   WorkOffsets offsets_;

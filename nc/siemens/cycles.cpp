@@ -92,6 +92,7 @@ void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
       const int kind = static_cast<int>(std::abs(call.number(1, call.has(0) && call.number(0) > 0 ? 1 : 0))) % 10;
       cycle832_ = kind != 0;
       cycle832_tolerance_mm_ = cycle832_ && call.number(0) > 0 ? call.number(0) * unit_mm() : -1;
+      contour_tolerance_mm_ = -1;
       set_contouring();
       break;
     }

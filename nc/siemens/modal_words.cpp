@@ -117,8 +117,14 @@ void BlockRunner::set_contouring() {
   const bool on = cycle832_ || compressor_;
   state_.high_speed_contouring = on;
   state_.contouring = on ? Contouring::cycle832 : Contouring::none;
-  state_.blend_tolerance_mm = blending_ == 641 ? adis_mm_ : cycle832_ && blending_ != 60 ? cycle832_tolerance_mm_ : -1;
+  const double tolerance_mm = contour_tolerance_mm_ > 0 ? contour_tolerance_mm_ : cycle832_tolerance_mm_;
+  state_.blend_tolerance_mm = blending_ == 641 ? adis_mm_ : on && blending_ != 60 ? tolerance_mm : -1;
   change_state();
+}
+
+void BlockRunner::set_contour_tolerance(double tolerance) {
+  contour_tolerance_mm_ = tolerance > 0 ? tolerance * unit_mm() : -1;
+  set_contouring();
 }
 
 bool BlockRunner::execute(bool& ends_subprogram) {

@@ -336,6 +336,16 @@ void BlockRunner::go_to_fixed_point() {
   if (g74) move.reference_axes = static_cast<std::uint8_t>(given & 7U);
 }
 
+/// Machine coordinates by a variable of the machine's maker (_Z_HOME), which the program does not declare.
+void BlockRunner::leave_for_machine_place(char axis, const std::string& name, std::uint32_t offset) {
+  report_.warning(offset, "machine-place",
+                  fmt::format("{} goes to {}, a variable that the program does not declare; where it is afterwards is "
+                              "not known",
+                              axis, name),
+                  name);
+  place_[static_cast<std::size_t>(axis - 'X')] = AxisPlace::reference;
+}
+
 /// A place of the machine's own that the program does not give.
 void BlockRunner::go_home(const WordRow& row, std::uint32_t offset, const BlockPlace&) {
   report_.warning(

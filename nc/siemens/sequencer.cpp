@@ -349,12 +349,21 @@ double Sequencer::word_value(const Item& item, std::string_view what) {
   return evaluator_.known_number(item.value, what);
 }
 
+/// SUPA, G53, G153.
+bool Sequencer::says_machine_frame(const Item& item) const {
+  if (item.kind == ItemKind::command) return item.row->does == Does::supa;
+  return item.kind == ItemKind::word && item.constant && tree().names[item.name] == "G" &&
+         (item.number == 53 || item.number == 153);
+}
+
 void Sequencer::run_items(const Statement& s) {
   // Expressions leave no words of their own to edit: find out before the block begins.
   for (const Item& item : s.items)
     if (item.kind == ItemKind::word && !item.constant && item.value != kNone && !item.row &&
         std::string_view("XYZABCIJKF").find(tree().names[item.name][0]) != std::string_view::npos)
       block_has_expression_ = true;
+  in_machine_frame_ = block_has_expression_ &&
+                      std::ranges::any_of(s.items, [this](const Item& item) { return says_machine_frame(item); });
   runner_.begin(place());
   const Item* call = nullptr;
   const Item* mcall = nullptr;
@@ -497,6 +506,8 @@ void Sequencer::run_word(const Item& item) {
                   fmt::format("{} is no word here; an axis or a function was expected", letter), name);
     return;
   }
+  if (in_machine_frame_ && letter >= 'X' && letter <= 'Z' && !item.constant && evaluator_.is_undeclared(item.value))
+    return runner_.leave_for_machine_place(letter, tree().names[tree().nodes[item.value].name], item.offset);
   Slot& slot = words.set(letter);
   if (slot.given)
     report_.error(item.offset, "word-twice", fmt::format("{} twice in one block; once was expected", letter));
@@ -543,6 +554,8 @@ void Sequencer::run_command_word(const Item& item) {
       return set_extra(item, Extra::c3);
     case Does::modal_rounding:
       return runner_.set_modal_rounding(word_value(item, row.name));
+    case Does::contour_tolerance:
+      return runner_.set_contour_tolerance(word_value(item, row.name));
     case Does::offset_normal:
       return runner_.set_offset_normal(word_value(item, row.name));
     case Does::corner_feed:

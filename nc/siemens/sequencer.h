@@ -50,6 +50,7 @@ class Sequencer {
   void run_block(const Statement* statement);
   void run_plain_block();
   bool run_flow(const Statement& s);
+  bool says_machine_frame(const Item& item) const;
   void run_items(const Statement& s);
   void run_word(const Item& item);
   void run_command_word(const Item& item);
@@ -95,6 +96,7 @@ class Sequencer {
   std::map<const Program*, std::vector<std::uint8_t>> other_runs_;
   std::size_t repeated_ = 0;
   bool block_has_expression_ = false;
+  bool in_machine_frame_ = false;  ///< of a block with expressions: SUPA, G53, G153 stand in it
 };
 
 }  // namespace camber::nc::siemens

@@ -203,6 +203,11 @@ double Evaluator::known_number(std::uint32_t index, std::string_view what) {
   return out;
 }
 
+bool Evaluator::is_undeclared(std::uint32_t index) const {
+  const Node& n = node(index);
+  return n.kind == NodeKind::variable && n.count == 0 && tree_->names[n.name].size() > 2 && !variable(n.name);
+}
+
 std::string Evaluator::text(std::uint32_t index) { return text_of(value(index)); }
 
 bool Evaluator::truth(std::uint32_t index) {

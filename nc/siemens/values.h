@@ -74,6 +74,8 @@ class Evaluator {
   bool truth(std::uint32_t node);
   /// A number that has to be known.
   double known_number(std::uint32_t node, std::string_view what);
+  /// A name alone that no DEF has declared.
+  bool is_undeclared(std::uint32_t node) const;
 
   void assign(const Item& item);
   void declare(const Declared& declared);

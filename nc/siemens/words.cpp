@@ -114,7 +114,7 @@ constexpr auto kRows = std::to_array<WordRow>({
     WordRow{"COMPSURF", kCommand, Does::contour_mode, "compressor"},
     WordRow{"COMPOF", kCommand, Does::contour_mode_off, "compressor off"},
     WordRow{"COMPPATH", kCommand, Does::contour_mode, "compressor"},
-    WordRow{"CTOL", kAddress, Does::nothing, "contour tolerance"},
+    WordRow{"CTOL", kAddress, Does::contour_tolerance, "tolerance of compressor and rounding"},
     WordRow{"OTOL", kAddress, Does::nothing, "orientation tolerance"},
     WordRow{"ATOL", kAddress, Does::nothing, "axis tolerance"},
     WordRow{"FFWON", kCommand, Does::nothing, "feed-forward on"},

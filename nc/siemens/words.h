@@ -36,6 +36,7 @@ enum class Does : std::uint8_t {
   line_angle,            // ANG
   blend_distance,        // ADIS
   blend_distance_rapid,  // ADISPOS
+  contour_tolerance,     // CTOL
   offset_normal,         // OFFN
   plane_angle,           // RPL
   direction_a,

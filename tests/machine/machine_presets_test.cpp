@@ -14,7 +14,7 @@ namespace camber::machine {
 namespace {
 
 TEST(MachinePreset, AreReadByTheirNames) {
-  ASSERT_EQ(machine_presets().size(), 5u);
+  ASSERT_EQ(machine_presets().size(), 7u);
   for (const MachinePreset& preset : machine_presets()) {
     const std::string name = "preset:" + std::string(preset.name);
     Diagnostics diagnostics;
@@ -34,7 +34,8 @@ TEST(MachinePreset, AreReadByTheirNames) {
 TEST(MachinePreset, EachValueHasARangeThatHoldsItAndASource) {
   const std::regex value(R"(^(\w+) = ([-\d.]+) +# (-?[\d.]+) to (-?[\d.]+): \S.*)"),
       corner(R"(^corner = \{ .*= ([\d.]+) \} +# ([\d.]+) to ([\d.]+): \S.*)"),
-      other(R"(^(\[.*\]|chain = .*|direction = .*|positive = .*|point_mm = .*# -?\d+ to \d+: \S.*)?$)");
+      other(
+          R"(^(\[.*\]|dialect = "\w+"|acceleration_law = "bell"|chain = .*|direction = .*|positive = .*|point_mm = .*# -?\d+ to \d+: \S.*)?$)");
   for (const MachinePreset& preset : machine_presets()) {
     std::istringstream lines{std::string(preset.toml)};
     int numbers = 0;
@@ -72,8 +73,8 @@ TEST(MachinePreset, UnknownNamesAreErrors) {
   } catch (const InputError& e) {
     EXPECT_STREQ(e.what(),
                  "preset:vmc40: error: there is no machine preset \"preset:vmc40\" (did you mean \"preset:vmc-40\"?); "
-                 "preset:router, preset:vmc-40, preset:vmc-linear, preset:hsc-die-mould, preset:five-axis-trunnion was "
-                 "expected [machine-preset]");
+                 "preset:router, preset:vmc-40, preset:vmc-linear, preset:hsc-die-mould, preset:five-axis-trunnion, "
+                 "preset:tnc-640, preset:sinumerik-840d was expected [machine-preset]");
   }
 }
 

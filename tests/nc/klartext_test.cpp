@@ -279,6 +279,30 @@ TEST(Klartext, TheToleranceOfCycle32IsTheControlsMode) {
   EXPECT_EQ(r.moves.state_of(r.moves.moves[2]).contouring, Contouring::none);
 }
 
+TEST(Klartext, ABlankMayStandBetweenFAndItsWord) {
+  EXPECT_EQ(said("3 TOOL CALL 1 Z S1000 F300\n4 L X+0 Y+0 Z+50 F MAX\n5 L Z-1 F AUTO\n6 CYCL DEF 200 NAME ~\nQ200=2 ~\n"
+                 "Q201=-5 ~\nQ206=100 ~\nQ202=5 ~\nQ203=0\n7 CYCL CALL POS X1. Y2. Z0. F MAX M3\n"
+                 "8 PATTERN DEF POS1 (X+1 Y+1 Z+0)\n9 CYCL CALL PAT F MAX M3\n"),
+            Messages{});
+  const Read r = read_lines(with_start("3 TOOL CALL 1 Z S1000 F300\n4 L X+0 Y+0 Z+50 FMAX\n5 L Z-1 F AUTO\n"));
+  EXPECT_NEAR(r.moves.moves.back().feed_mm_per_s, 5, 1e-12);
+}
+
+/// From a machine coordinate a cycle goes to its clearance height, which is absolute: its holes are where they are.
+TEST(Klartext, ACycleFromTheMachinesZDrillsItsHole) {
+  const Read r = read_lines(
+      with_start("3 L Z-1 R0 FMAX M91\n4 CYCL DEF 200 NAME ~\nQ200=2 ~\nQ201=-5 ~\nQ206=100 ~\nQ202=5 ~\nQ203=0 ~\n"
+                 "Q204=50\n5 L X+10 Y+20 R0 FMAX M99\n"));
+  EXPECT_EQ(r.messages, Messages{});
+  ASSERT_GE(r.moves.moves.size(), 3U);
+  const Move& hole = r.moves.moves[r.moves.moves.size() - 3];
+  EXPECT_EQ(hole.kind, MoveKind::linear);
+  EXPECT_FALSE(hole.reference);
+  expect_near_mm(hole.start_mm, {10, 20, 2});
+  expect_near_mm(hole.end_mm, {10, 20, -5});
+  expect_near_mm(r.moves.moves.back().end_mm, {10, 20, 50});
+}
+
 // --- cycles ---------------------------------------------------------------------------------------------------------
 
 std::string cycle(const std::string& q, const std::string& call) {

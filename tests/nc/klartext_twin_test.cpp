@@ -23,8 +23,9 @@ class Twins {
     place_ = {0, 0, 20000};
   }
 
-  void run(int blocks) {
+  void run(int blocks, bool tilt = false) {
     for (int i = 0; i < blocks; ++i) block();
+    if (tilt) tilted();
     both("G0 Z50", "L Z+50 FMAX");
     iso_ += "M30\n" + iso_subs_ + "%\n";
     line("M30");
@@ -315,6 +316,28 @@ class Twins {
          fmt::format("LP PR{} PA{:+}", mm(r, true), 90 * quarter));
   }
 
+  /// A plane by a datum and Euler's angles, and moves in it.
+  void tilted() {
+    frames_ = true;
+    const Place datum{pick(-20000, 20000), pick(-20000, 20000), pick(-9000, 9000)};
+    const int precession = pick(-90, 90), nutation = pick(-60, 60), rotation = pick(-90, 90);
+    iso_ += fmt::format("G68.2 X{} Y{} Z{} I{} J{} K{}\nG53.1\n", mm(datum[0], false), mm(datum[1], false),
+                        mm(datum[2], false), precession, nutation, rotation);
+    line("CYCL DEF 7.0 DATUM SHIFT");
+    for (int a = 0; a < 3; ++a)
+      line(fmt::format("CYCL DEF 7.{} {}{}", a + 1, "XYZ"[a], mm(datum[static_cast<std::size_t>(a)], true)));
+    line(fmt::format("PLANE EULER EULPR{:+} EULNU{:+} EULROT{:+} TURN FMAX", precession, nutation, rotation));
+    place_ = {pick(-40000, 40000), pick(-40000, 40000), pick(0, 20000)};
+    both(fmt::format("G0 X{} Y{} Z{}", mm(place_[0], false), mm(place_[1], false), mm(place_[2], false)),
+         fmt::format("L X{} Y{} Z{} FMAX", mm(place_[0], true), mm(place_[1], true), mm(place_[2], true)));
+    straight(false);
+    arc_by_radius();
+    arc_by_centre();
+    helix();
+    steps();
+    straight(false);
+  }
+
   int at(int axis) const { return place_[static_cast<std::size_t>(axis)]; }
 
   std::mt19937 random_;
@@ -373,6 +396,31 @@ TEST(KlartextTwins, SayTheSameAsTheirIsoPrograms) {
   }
   std::cout << moves << " moves\n";
 }
+
+/// The same on a machine with rotary axes, and at the end in a tilted plane.
+void expect_tilted_twins(unsigned from, unsigned to) {
+  std::size_t tilted = 0;
+  for (unsigned seed = from; seed <= to && !::testing::Test::HasFailure(); ++seed) {
+    SCOPED_TRACE(seed);
+    Twins twins(seed);
+    twins.run(8, true);
+    InterpreterOptions options = as("fanuc");
+    options.rotary_axes = {{.letter = 'A'}, {.letter = 'C'}};
+    const Read iso = read_text(twins.iso(), options);
+    options.dialect = *dialect_named("heidenhain");
+    const Read klartext = read_text(twins.klartext(), options, "twin.h");
+    ASSERT_FALSE(iso.diagnostics.has_errors()) << iso.messages.front() << "\n" << twins.iso();
+    ASSERT_FALSE(klartext.diagnostics.has_errors()) << klartext.messages.front() << "\n" << twins.klartext();
+    expect_same_moves(iso.moves, klartext.moves, 1e-9);
+    for (const Move& m : klartext.moves.moves)
+      tilted += m.arc != Move::kNoArc && klartext.moves.arcs[m.arc].normal.cwiseAbs().maxCoeff() < 0.99;
+    if (::testing::Test::HasFailure()) ADD_FAILURE() << twins.iso() << "\n" << twins.klartext();
+  }
+  EXPECT_GE(tilted, (to - from + 1) / 2);
+}
+
+TEST(KlartextTwins, SayTheSameInTiltedPlanes) { expect_tilted_twins(1, 40); }
+TEST(KlartextTwinsSlow, SayTheSameInTiltedPlanes) { expect_tilted_twins(41, 240); }
 
 /// Edits of moves whose text stands by itself: new ends, via points, feeds.
 std::vector<MoveEdit> edits_of(const Read& r, std::mt19937& random) {

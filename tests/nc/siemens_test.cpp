@@ -227,6 +227,37 @@ TEST(Siemens, ModesOfTheControl) {
   EXPECT_EQ(state(4).path_control, PathControl::exact_stop);
 }
 
+TEST(Siemens, ToleranceOfThePathByCtol) {
+  const Read r = read_siemens(
+      "G64\nG1 X0 Y0 Z0 F100\nCYCLE832(0.01,_FINISH,1)\nX1\nCTOL=0.02\nX2\nCTOL=-1\nX3\n"
+      "CYCLE832(0.05,2,1) \nX4\nCYCLE832()\nX5\nCOMPCAD CTOL=0.03\nX6\n");
+  EXPECT_EQ(r.messages, Messages{});
+  const auto state = [&](std::size_t i) { return r.moves.state_of(r.moves.moves[i]); };
+  EXPECT_DOUBLE_EQ(state(1).blend_tolerance_mm, 0.01);
+  EXPECT_DOUBLE_EQ(state(2).blend_tolerance_mm, 0.02);
+  EXPECT_DOUBLE_EQ(state(3).blend_tolerance_mm, 0.01);
+  EXPECT_DOUBLE_EQ(state(5).blend_tolerance_mm, -1);
+  EXPECT_DOUBLE_EQ(state(6).blend_tolerance_mm, 0.03);
+}
+
+/// _Z_HOME and the like are variables of the machine's maker (GUD), which no program declares.
+TEST(Siemens, MachineCoordinatesByAVariableOfTheMachinesMaker) {
+  const Read r =
+      read_siemens("G0 X1 Y2 Z3\nSUPA G0 Z=_Z_HOME D0\nG53 X=_X_HOME Y=_Y_HOME\nG0 X5 Y6 D1\nZ4\nG1 X7 F100\n");
+  EXPECT_EQ(
+      r.messages,
+      (Messages{"p.mpf:2:9: warning: Z goes to _Z_HOME, a variable that the program does not declare; where it is "
+                "afterwards is not known [machine-place]",
+                "p.mpf:3:5: warning: X goes to _X_HOME, a variable that the program does not declare; where it is "
+                "afterwards is not known [machine-place]",
+                "p.mpf:3:15: warning: Y goes to _Y_HOME, a variable that the program does not declare; where it "
+                "is afterwards is not known [machine-place]"}));
+  expect_near_mm(r.moves.moves.back().start_mm, {5, 6, 4});
+  EXPECT_FALSE(r.moves.moves.back().reference);
+  EXPECT_EQ(read_siemens("G0 Z=_Z_HOME\n").messages,
+            Messages{"p.mpf:1:6: error: _Z_HOME is not declared here; DEF was expected before [variable]"});
+}
+
 TEST(Siemens, ToolsByNameHaveNumbersOfTheirOwn) {
   const Read r = read_siemens("T=\"MILL\" M6\nG0 X0 Y0 Z0\nT1\nM6\nX1\nT=\"MILL\"\nM6\nX2\n");
   EXPECT_EQ(r.messages, Messages{});
