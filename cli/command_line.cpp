@@ -5,6 +5,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -60,6 +61,11 @@ int refuse_standard_output() {
   return kInputWrong;
 }
 
+/// A thread, a folder, an address. oneTBB says by words alone that it got no thread.
+bool refused_by_system(const std::exception& problem) {
+  return dynamic_cast<const std::system_error*>(&problem) || std::string_view(problem.what()).starts_with("pthread_");
+}
+
 int guarded(const Action& action, const GlobalOptions& options) {
   try {
     return action();
@@ -70,11 +76,12 @@ int guarded(const Action& action, const GlobalOptions& options) {
     return kNumbersDidNotWorkOut;
   } catch (const std::bad_alloc&) {
     print_error("not enough memory; a larger voxel_mm, a smaller stock or fewer threads need less [memory]");
-  } catch (const std::system_error& problem) {
-    if (!standard_output_stands()) return refuse_standard_output();
-    print_error(fmt::format("the system refused: {} [system]", problem.what()));
   } catch (const std::exception& problem) {
-    print_error(fmt::format("internal error: {}; please report it with the files [internal]", problem.what()));
+    if (!standard_output_stands()) return refuse_standard_output();
+    if (refused_by_system(problem))
+      print_error(fmt::format("the system refused: {} [system]", problem.what()));
+    else
+      print_error(fmt::format("internal error: {}; please report it with the files [internal]", problem.what()));
   }
   return kInputWrong;
 }

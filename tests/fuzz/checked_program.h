@@ -1,7 +1,7 @@
 #pragma once
-// What has to hold of every program that reads without errors, whatever the fuzzer made it from: without an edit it comes
-// out byte for byte; with one move edited the text still reads without an error, has the moves that it had, and the edited
-// one ends where it should.
+// What has to hold of every program that reads without errors, whatever the fuzzer made it from: without an edit it
+// comes out byte for byte; with one move edited the text still reads without an error, has the moves that it had, and
+// the edited one ends where it should.
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include <cstdio>
@@ -21,7 +21,8 @@ namespace camber::fuzz {
 
 /// Beyond this a double has fewer digits left than the decimals that are compared.
 inline constexpr double kLargestPlaceMm = 1e6;
-inline constexpr double kPlaceTolerance_mm = 2e-3;  ///< rounding to four decimals, or to five of an inch, and the sums of G91
+inline constexpr double kPlaceTolerance_mm =
+    2e-3;  ///< rounding to four decimals, or to five of an inch, and the sums of G91
 /// Blocks that loops may run again. A run with the limit of everyday (ten million) would take seconds.
 inline constexpr std::size_t kMaxRepeatedBlocks = 20000;
 /// More moves than the blocks of any fuzzed text make without repeats of cycles: not worth emitting in this time.

@@ -1,7 +1,8 @@
 // libFuzzer targets: any bytes are read as a file of one kind. CAMBER_DOOR names the reader; each is an executable.
 //
 // What has to hold: no crash, no hang, no unbounded memory, no exception but InputError, and that with a message. The
-// last byte of the input chooses among the forms that a reader takes; the others are the file, as it would be on a disk.
+// last byte of the input chooses among the forms that a reader takes; the others are the file, as it would be on a
+// disk.
 #include <fcntl.h>
 #include <unistd.h>
 
