@@ -1,9 +1,11 @@
 #include "base/diagnostics.h"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -119,9 +121,11 @@ char line_end_of(std::string_view text) {
 
 /// All that is left of a stream whose length nobody knows (a pipe).
 std::string read_to_end(std::istream& in) {
-  std::ostringstream buffer;
-  buffer << in.rdbuf();
-  return std::move(buffer).str();
+  std::string out;
+  std::array<char, 1 << 16> piece;
+  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
+    out.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+  return out;
 }
 
 }  // namespace
@@ -146,12 +150,19 @@ SourceText SourceText::read(const std::string& path) {
     fail_on_file(path, "is a folder; a file was expected", "file-unreadable");
   std::ifstream in(path, std::ios::binary);
   if (!in) fail_on_file(path, "cannot be opened for reading", "file-unreadable");
-  if (!std::filesystem::is_regular_file(path, ec)) return SourceText(path, read_to_end(in));
-  const auto size = std::filesystem::file_size(path, ec);
+  // Half a program is another program.
+  const auto refuse_half = [&] {
+    if (in.bad())
+      fail_on_file(path, "cannot be read to its end: " + std::string(std::strerror(errno)), "file-unreadable");
+  };
+  const bool has_size = std::filesystem::is_regular_file(path, ec);
+  const auto size = has_size ? std::filesystem::file_size(path, ec) : 0;
   std::string text(ec ? 0 : static_cast<std::size_t>(size), '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
+  refuse_half();
   if (in) text += read_to_end(in);  // it has grown meanwhile
+  refuse_half();
   return SourceText(path, std::move(text));
 }
 

@@ -186,14 +186,17 @@ NewPart create_part(const std::string& place) {
   return part;
 }
 
-/// Opens the very file of the descriptor, whatever stands at its name by now, and closes the descriptor.
+/// Opens the very file of the descriptor, whatever stands at its name by now.
 void open_descriptor(std::ofstream& stream, const NewPart& part) {
   std::error_code ec;
   const std::string by_descriptor = fmt::format("/proc/self/fd/{}", part.descriptor);
   stream.open(fs::exists(by_descriptor, ec) ? by_descriptor : part.path, std::ios::binary | std::ios::trunc);
-  const int reason = errno;
-  close(part.descriptor);
-  errno = reason;
+}
+
+/// False: the bytes did not reach the disk, errno says why. File systems that cannot say so are believed.
+bool reaches_disk(int descriptor) {
+  if (descriptor < 0 || fsync(descriptor) == 0) return true;
+  return errno == EINVAL || errno == ENOSYS || errno == EROFS || errno == ENOTSUP;
 }
 
 }  // namespace
@@ -237,27 +240,41 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), place_(behind
     } else {
       part_path_ = part.path;
       slot_ = enter(part_path_);
+      descriptor_ = part.descriptor;
       open_descriptor(stream_, part);
     }
     reason = errno;
   }
   if (stream_) return;
-  leave(slot_);
+  discard();
   fail_on_file(path_, std::string("cannot be written: ") + std::strerror(reason), "file-unwritable");
 }
 
 OutputFile::~OutputFile() {
-  if (committed_) return;
+  if (!committed_) discard();
+}
+
+void OutputFile::discard() {
   stream_.close();
-  if (part_path_ == place_) return;
+  close_descriptor();
+  if (part_path_.empty() || part_path_ == place_) return;
   std::error_code ec;
   fs::remove(part_path_, ec);
   leave(slot_);
 }
 
+void OutputFile::close_descriptor() {
+  if (descriptor_ >= 0) close(descriptor_);
+  descriptor_ = -1;
+}
+
 void OutputFile::commit() {
   stream_.close();
   if (stream_.fail()) fail_on_file(path_, "could not be written to its end (is the disk full?)", "file-unwritable");
+  // Before the rename: after a power failure the name must not lead to a file that is there but empty.
+  if (!reaches_disk(descriptor_))
+    fail_on_file(path_, std::string("could not be written to its end: ") + std::strerror(errno), "file-unwritable");
+  close_descriptor();
   std::error_code ec;
   if (part_path_ != place_) {
     const fs::file_status old = fs::status(place_, ec);

@@ -10,10 +10,10 @@ namespace camber {
 class Diagnostics;
 
 /// Creates `path` + ".part", or, if that exists, a part with a random name; existing files and links are not written
-/// to. commit() flushes the part and renames it to `path`. Without commit() the part is removed and an older file at
-/// `path` is unchanged; the new file inherits the permissions of an older one. If `path` is a symbolic link, its target
-/// is written. Other than regular files (/dev/stdout, a pipe) are written directly. "-" is standard output where
-/// claim_standard_output() was called. Throws InputError [file-unwritable].
+/// to. commit() brings the part to the disk and renames it to `path`. Without commit() the part is removed and an older
+/// file at `path` is unchanged; the new file inherits the permissions of an older one. If `path` is a symbolic link,
+/// its target is written. Other than regular files (/dev/stdout, a pipe) are written directly. "-" is standard output
+/// where claim_standard_output() was called. Throws InputError [file-unwritable].
 class OutputFile {
  public:
   explicit OutputFile(std::string path);
@@ -26,12 +26,16 @@ class OutputFile {
   void commit();
 
  private:
+  void discard();
+  void close_descriptor();
+
   std::string path_;       ///< as given by the user
   std::string place_;      ///< with symbolic links resolved
   std::string part_path_;  ///< as place_ where that is no regular file
   std::ofstream stream_;
   bool committed_ = false;
-  int slot_ = -1;  ///< among the parts that a signal removes
+  int descriptor_ = -1;  ///< of the part
+  int slot_ = -1;        ///< among the parts that a signal removes
 };
 
 /// From now on SIGINT, SIGTERM and SIGHUP say which files had been written, remove the parts of files that are not

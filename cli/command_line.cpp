@@ -1,9 +1,12 @@
 #include "cli/command_line.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
+#include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -50,6 +53,19 @@ std::unique_ptr<tbb::global_control> thread_limit(int threads) {
                                                static_cast<std::size_t>(threads));
 }
 
+/// True where everything printed so far has gone out.
+bool standard_output_stands() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
+int refuse_standard_output() {
+  print_error("standard output cannot be written to its end (is the disk full?) [file-unwritable]");
+  return kInputWrong;
+}
+
+/// A thread, a folder, an address. oneTBB says by words alone that it got no thread.
+bool refused_by_system(const std::exception& problem) {
+  return dynamic_cast<const std::system_error*>(&problem) || std::string_view(problem.what()).starts_with("pthread_");
+}
+
 int guarded(const Action& action, const GlobalOptions& options) {
   try {
     return action();
@@ -61,7 +77,11 @@ int guarded(const Action& action, const GlobalOptions& options) {
   } catch (const std::bad_alloc&) {
     print_error("not enough memory; a larger voxel_mm, a smaller stock or fewer threads need less [memory]");
   } catch (const std::exception& problem) {
-    print_error(fmt::format("internal error: {}; please report it with the files [internal]", problem.what()));
+    if (!standard_output_stands()) return refuse_standard_output();
+    if (refused_by_system(problem))
+      print_error(fmt::format("the system refused: {} [system]", problem.what()));
+    else
+      print_error(fmt::format("internal error: {}; please report it with the files [internal]", problem.what()));
   }
   return kInputWrong;
 }
@@ -152,7 +172,7 @@ int run(int argc, const char* const* argv) {
   };
   const int status = guarded(confined, options);
   remove_empty_folders();
-  return status;
+  return status == kDone && !standard_output_stands() ? refuse_standard_output() : status;
 }
 
 }  // namespace camber::cli

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::string_view kTypicalMark = "[typical-value]";
 
-/// The file's tables; null where it cannot be read, which its reader has said.
+/// The file's tables; null where they cannot be read, which their reader has said. Throws where the file, that could be
+/// opened before, no longer can: what is assumed would not be told.
 std::unique_ptr<TomlFile> file_of(const std::string& path) {
   std::error_code ec;
   if (!std::filesystem::is_regular_file(path, ec)) return nullptr;
@@ -25,7 +26,9 @@ std::unique_ptr<TomlFile> file_of(const std::string& path) {
     Diagnostics ignored;
     auto file = read_toml(path, "TOML", ignored);
     return ignored.has_errors() ? nullptr : std::move(file);
-  } catch (const InputError&) {
+  } catch (const InputError& problem) {
+    for (const Diagnostic& d : problem.diagnostics())
+      if (d.check == "file-unreadable") throw;
     return nullptr;
   }
 }

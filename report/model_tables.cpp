@@ -2,15 +2,13 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include "base/confined_files.h"
+#include "base/diagnostics.h"
 #include "base/numbers.h"
 #include "base/units.h"
 #include "machine/force_law.h"
@@ -29,11 +27,11 @@ std::string value_text(double value, int digits = 6) {
   return fmt::format("{:.{}g}", value, digits);
 }
 
+/// Nothing where there is no such file.
 std::optional<std::string> file_text(const std::string& path) {
-  require_confined(path);
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  std::error_code ec;
+  if (!std::filesystem::is_regular_file(path, ec)) return std::nullopt;
+  return SourceText::read(path).text();
 }
 
 void add_file(TextTable& table, const std::string& what, const std::string& path) {
@@ -122,9 +120,8 @@ TextTable inputs_table(const Job& job) {
 }
 
 std::map<std::string, std::string> stated_errors(const std::string& path) {
-  require_confined(path);
   std::map<std::string, std::string> out;
-  std::ifstream in(path);
+  std::istringstream in(file_text(path).value_or(""));
   static const std::regex kLine(R"(#\s*(\w+):\s*\S+\s*\+-\s*(\S+).*)");
   std::string line;
   std::smatch found;

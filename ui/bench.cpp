@@ -188,9 +188,10 @@ json Bench::init(const std::string& job, const Options& options) {
   const std::string proposal = folder_of(job) + fmt::format("proposal-{}.toml", next_stem());
   const std::string path = folder_.place(proposal);
   const Outcome made = do_now(init_command(folder_, old.programs.front(), proposal, options));
-  std::error_code ec;
+  std::error_code ec, removal;
   if (made.ended.status == 0) fs::rename(path, folder_.place(job), ec);
-  fs::remove(path, ec);
+  fs::remove(path, removal);
+  if (ec) throw Refused{500, fmt::format("{} cannot be written: {}", job, ec.message())};
   if (made.ended.status != 0) return {{"job", nullptr}, {"messages", made.messages}};
   json out = this->job(job);
   out["messages"] = made.messages;
@@ -214,7 +215,11 @@ json Bench::save(const std::string& job, const std::string& text) {
     return {{"saved", false}, {"messages", read.messages}};
   }
   fs::rename(folder_.place(draft), folder_.place(job), ec);
-  if (ec) throw Refused{500, fmt::format("{} cannot be written: {}", job, ec.message())};
+  if (ec) {
+    std::error_code removal;
+    fs::remove(folder_.place(draft), removal);
+    throw Refused{500, fmt::format("{} cannot be written: {}", job, ec.message())};
+  }
   json out = this->job(job);
   out["saved"] = true, out["messages"] = read.messages;
   return out;

@@ -7,6 +7,7 @@
 #include <tbb/task_group.h>
 
 #include "api/commands/feed.h"
+#include "base/first_failure.h"
 #include "base/freed_memory.h"
 #include "base/output_file.h"
 #include "base/stage.h"
@@ -120,24 +121,26 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
   }
   Stage stage("writing", work_of_writing(program, prediction, job));
   const report::FormErrorPoints points = counted(report::form_error_points(program, prediction, traced), stage);
+  FirstFailure failure;
   tbb::task_group others;
-  others.run([&] { report::write_form_error_csv(folder / "form_error.csv", points); });
-  others.run([&] { report::write_form_error_vtp(folder / "form_error.vtp", points); });
-  others.run([&] {
+  const auto beside = [&](const auto& write) { others.run([&failure, write] { failure.guard(write); }); };
+  beside([&] { report::write_form_error_csv(folder / "form_error.csv", points); });
+  beside([&] { report::write_form_error_vtp(folder / "form_error.vtp", points); });
+  beside([&] {
     report::write_forces_csv(folder / "forces.csv", job, program, prediction);
     report::write_spindle_load_csv(folder / "spindle_load.csv", report::spindle_loads(job, program, prediction));
     if (forces_at > 0)
       report::write_forces_at_csv(folder / fmt::format("forces_at_{}.csv", forces_at), prediction.cut.turn);
   });
-  others.run([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
+  beside([&] { report::write_form_error_ply(folder / "form_error.ply", points, prediction.form_error_um.p95); });
   if (request.meshes)
-    others.run([&] {
+    beside([&] {
       report::write_error_mesh(folder / "form_error_mesh.ply", report::error_mesh(points, job.simulation.voxel_mm),
                                prediction.form_error_um.p95);
     });
   const auto features = report::features_of(job, prediction.surface);
-  if (!features.empty()) others.run([&] { report::write_features_csv(folder / "features.csv", features); });
-  others.run_and_wait([&] {
+  if (!features.empty()) beside([&] { report::write_features_csv(folder / "features.csv", features); });
+  failure.guard([&] {
     prediction.machined->unshare();  // what is kept once takes its room again
     prediction.machined->save(folder / "stock.vdb");
     prediction.machined.reset();
@@ -148,6 +151,8 @@ void write_files(const machine::Job& job, const PreparedJob& prepared, simulate:
     if (traced) report::add_traced(page, program, prediction, *traced, report::rows_of_program(program, job.machine));
     report::write_html_report(folder / "report.html", page);
   });
+  others.wait();
+  failure.rethrow();
 }
 
 void show(const PredictRequest& request, const std::string& what, std::optional<double> share = {}) {

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <vector>
 
 #include <fcntl.h>
@@ -16,6 +17,7 @@
 #include <gtest/gtest.h>
 
 #include "base/diagnostics.h"
+#include "base/first_failure.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber {
@@ -101,6 +103,17 @@ TEST(OutputFile, AFullDiskKeepsTheOldFile) {
             path + ": error: could not be written to its end (is the disk full?) [file-unwritable]");
   EXPECT_EQ(tests::file_text(path), "OLD");
   EXPECT_EQ(names_in(folder), (std::vector<std::string>{"a.txt", "message.txt"}));
+}
+
+TEST(FirstFailure, ThrowsWhatFailedFirstAfterAllWasDone) {
+  FirstFailure failure;
+  int done = 0;
+  failure.guard([&] { ++done; });
+  failure.guard([&] { fail_on_file("a.txt", "cannot be written", "file-unwritable"); });
+  failure.guard([&] { throw std::bad_alloc(); });
+  failure.guard([&] { ++done; });
+  EXPECT_EQ(done, 2);
+  EXPECT_THROW(failure.rethrow(), InputError);
 }
 
 TEST(OutputFile, FollowsNoLinkThatLiesAtThePart) {

@@ -5,6 +5,7 @@
 
 #include "tests/support/ball_job.h"
 #include "tests/support/run_camber.h"
+#include "tests/support/wall_job.h"
 
 namespace camber {
 namespace {
@@ -249,6 +250,35 @@ TEST(BadInput, GapInATraceIsAWarningAndAnErrorWhenStrict) {
             "    0.060,0,0,2\n"
             "    ^\n");
   EXPECT_FALSE(std::filesystem::exists(folder / "f.toml"));
+}
+
+TEST(StandardOutput, ThatIsFullIsAnError) {
+  const TempFolder folder;
+  folder.write("p.nc", std::string(kHeader) + "T1 M6\nS3000 M3\n" + kCut);
+  const CamberRun run = run_camber(folder, "check -q p.nc > /dev/full 2> said.txt < /dev/null #");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(tests::file_text(folder / "said.txt"),
+            "camber: error: standard output cannot be written to its end (is the disk full?) [file-unwritable]\n");
+}
+
+/// A folder stands where one table should go. The stock, whose loops run beside the writing of that table, is that of a
+/// run without it.
+TEST(Outputs, AreWholeBesideOneThatFails) {
+  const TempFolder folder;
+  tests::write_wall(folder);
+  ASSERT_EQ(run_camber(folder, "-q predict job.toml -o whole").status, 0);
+  for (const std::string name : {"form_error.csv", "form_error.vtp", "forces.csv", "form_error.ply"}) {
+    std::filesystem::create_directories(folder / ("beside-" + name + "/" + name + "/x"));
+    const CamberRun run = run_camber(folder, "-q predict job.toml -o beside-" + name);
+    EXPECT_EQ(run.status, 1);
+    EXPECT_EQ(run.err,
+              "beside-" + name + "/" + name + ": error: cannot be written: Is a directory [file-unwritable]\n");
+    for (const std::string other : {"stock.vdb", "feed.csv", "form_error.csv", "form_error.vtp", "form_error.ply"})
+      if (other != name)
+        EXPECT_EQ(tests::file_text(folder / ("beside-" + name + "/" + other)),
+                  tests::file_text(folder / ("whole/" + other)))
+            << name << " " << other;
+  }
 }
 
 }  // namespace

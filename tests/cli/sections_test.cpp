@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -217,6 +218,19 @@ TEST_F(Parts, ThatAreTornAreNamedAndWrittenAgain) {
       again("--section 2 --stage sweep [part-torn]\n"));
   ASSERT_EQ(run_camber(folder_, stage("sweep", 2, 2)).status, 0);
   EXPECT_EQ(run_camber(folder_, "-q merge parts").status, 0);
+}
+
+TEST_F(Parts, WithAFlippedBitAreNamedAndNeverMerged) {
+  const std::string file = part("solve-1-001-of-002.part"), whole = tests::file_text(file);
+  constexpr std::size_t kPlaces = 12;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    std::string flipped = whole;
+    flipped[i * (whole.size() - 1) / (kPlaces - 1)] ^= static_cast<char>(1 << i % 8);
+    std::ofstream(file, std::ios::binary) << flipped;
+    expect_refused(
+        "parts/parts/solve-1-001-of-002.part: error: is not whole; a part that was written to its end was expected: " +
+        again("--section 1 --stage solve [part-torn]\n"));
+  }
 }
 
 /// FNV-1a with an end mark, as the head of a part has it.

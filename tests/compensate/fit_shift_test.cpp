@@ -59,6 +59,29 @@ TEST(FitShift, APlungeGetsNoShiftAcross) {
   EXPECT_NEAR(points[points.size() - 5].shift_mm.z(), -0.02, 0.002);  // at the end of the second cut
 }
 
+/// Walls on both sides of a plunge with errors of opposite sign: its one shift is the mean, as the least squares have
+/// it, and not that of one side, which would leave the other wall a step.
+TEST(FitShift, APlungeTakesTheMeanOfItsTwoSidesInXAndInY) {
+  for (const int across : {0, 1}) {
+    const Vec3 along = Vec3::Unit(1 - across) * 12;
+    nc::Interpretation program = line_program(3);
+    const std::vector<Vec3> places{{0, 0, 5}, along + Vec3(0, 0, 5), along + Vec3(0, 0, 1), 2 * along + Vec3(0, 0, 1)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      program.moves[i].start_mm = places[i];
+      program.moves[i].end_mm = places[i + 1];
+    }
+    ShiftPath path(program, std::vector<bool>(3, true), 1.0);
+    std::vector<Observation> seen;
+    for (const std::uint32_t move : {0u, 2u})
+      for (double u = 0.01; u < 1; u += 0.02)
+        seen.push_back({path.find(move, u), Vec3::Unit(across), move == 0 ? 0.02 : -0.02, 0.03});
+    fit_shift(path, seen, {});
+    EXPECT_NEAR(path.shift_at(path.find(1, 0.5))[across], 0, 0.005) << across;
+    EXPECT_NEAR(path.shift_at(path.find(0, 0.6))[across], -0.02, 0.004) << across;
+    EXPECT_NEAR(path.shift_at(path.find(2, 0.6))[across], 0.02, 0.004) << across;
+  }
+}
+
 TEST(FitShift, MovesThePathAgainstASmoothError) {
   const auto program = line_program(20);
   ShiftPath path(program, std::vector<bool>(20, true), 1.0);

@@ -1,5 +1,6 @@
 #include "nc/arcs.h"
 
+#include <cmath>
 #include <random>
 
 #include "tests/nc/nc_text.h"
@@ -18,6 +19,21 @@ TEST(Arcs, MoreThanHalfATurnByANegativeRadius) {
   w.clockwise = true;
   expect_near_mm(make_arc(w).arc.center_mm, {0, 0, 0});
   EXPECT_NEAR(make_arc(w).arc.sweep_rad, -1.5 * kPi, 1e-12);
+}
+
+/// The ends of a spiral in one direction from its centre: a full turn, on whatever side of zero the angle is rounded.
+TEST(Arcs, ASpiralWhoseEndsLieInOneDirectionIsAFullTurn) {
+  for (int degrees = 0; degrees < 360; degrees += 7)
+    for (const bool clockwise : {false, true}) {
+      const double angle = degrees * kPi / 180;
+      const Vec3 out(std::cos(angle), std::sin(angle), 0);
+      ArcWords w{.start_mm = 10 * out, .end_mm = 13 * out, .plane = Plane::xy, .clockwise = clockwise};
+      w.i_mm = -10 * out.x(), w.j_mm = -10 * out.y();
+      w.spiral = true;
+      EXPECT_NEAR(make_arc(w).arc.sweep_rad, (clockwise ? -2 : 2) * kPi, 1e-9) << degrees;
+      w.turns = 2;
+      EXPECT_NEAR(make_arc(w).arc.sweep_rad, (clockwise ? -4 : 4) * kPi, 1e-9) << degrees;
+    }
 }
 
 TEST(Arcs, AChordThatMissesTheDiameterByLittleIsHalfATurn) {
