@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <utility>
 
@@ -62,6 +63,7 @@ api::CompensateRequest compensate_request(const CompensateArguments& arguments) 
           .header = arguments.header,
           .header_hash = arguments.header_hash,
           .max_stock_crossings = arguments.report.empty() ? 0 : report::kMaxStockCrossings,
+          .levers = arguments.levers,
           .progress = {}};
 }
 
@@ -89,6 +91,11 @@ int compensate_program(const machine::Job& given, Diagnostics diagnostics, const
     in_rounds = true;
     const RoundsProgress::Whole whole = rounds.at(what, share);
     progress.show_whole(whole.what, whole.share);
+  };
+  request.outlook = [&](const compensate::Outlook& outlook) {
+    progress.clear();
+    if (!options.quiet) fmt::print("{}\n", report::outlook_sentence(outlook));
+    std::fflush(stdout);
   };
   api::CompensatedJob done;
   try {

@@ -19,7 +19,8 @@ struct CompensateArguments {
   std::string measured, measured_program;
   std::vector<double> check_voxels_mm;
   std::optional<double> time_budget_percent{};
-  bool keep_anyway = false;  ///< write the program even where it is no better than the given one
+  std::vector<std::string> levers{};  ///< by name; empty: the job's
+  bool keep_anyway = false;           ///< write the program even where it is no better than the given one
 };
 
 /// What the computation takes of the arguments.

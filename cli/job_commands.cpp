@@ -184,6 +184,10 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
           "extra machine time, %, for lower feeds and second cuts: the least error within it ([compensation] levers)")
       ->check(CLI::Range(0.0, 1000.0))
       ->type_name("PERCENT");
+  command->add_option("--levers", arguments->levers, "what may change, instead of the job's: shift,feed,passes")
+      ->delimiter(',')
+      ->expected(1)
+      ->type_name("LIST");
   command->add_flag("--keep-anyway", arguments->keep_anyway,
                     "write the program even if it is no better than the given one");
   command->add_flag("--header", arguments->header,

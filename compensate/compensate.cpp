@@ -22,12 +22,13 @@ std::string to_string(Stop stop) {
 
 CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options) {
   const auto& levers = job.compensation;
-  if (options.time_budget_percent && !levers.has(machine::Lever::feed) && !levers.has(machine::Lever::passes))
+  const auto budget = options.time_budget_percent ? options.time_budget_percent : levers.time_budget_percent;
+  if (budget && !levers.has(machine::Lever::feed) && !levers.has(machine::Lever::passes))
     diagnostics.add({Severity::error,
                      {job.path, 0, 0},
                      fmt::format("a time budget of {:g} % has no lever to use it; levers = [\"shift\", \"feed\"] was "
                                  "expected in [compensation]",
-                                 *options.time_budget_percent),
+                                 *budget),
                      "lever-missing",
                      {}});
   diagnostics.throw_if_errors();

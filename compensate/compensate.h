@@ -79,6 +79,12 @@ struct RepeatedRun {
   std::size_t first_line = 0, last_line = 0;
 };
 
+/// What is expected before the rounds start.
+struct Outlook {
+  double given_p95_um = 0;       ///< judged error of the given program
+  double achievable_p95_um = 0;  ///< the same where shifts take away all that they can
+};
+
 struct CompensationResult {
   std::string text;                          ///< the emitted program of the best round
   std::vector<std::uint32_t> block_of_line;  ///< by line of `text`, see nc::Emission; empty: the given program
@@ -90,9 +96,11 @@ struct CompensationResult {
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
   bool within_tolerance = false;  ///< the emitted program
-  double depth_limit_um = 0;      ///< the job's, or default_depth_limit_um
-  bool own_depth_limit = false;   ///< the job gives one
-  double unseen_mm2 = 0;          ///< area of the nominal surface without a point
+  Outlook outlook;
+  bool feed_unusable = false;    ///< the levers by default have feed, but no F word can be changed
+  double depth_limit_um = 0;     ///< the job's, or default_depth_limit_um
+  bool own_depth_limit = false;  ///< the job gives one
+  double unseen_mm2 = 0;         ///< area of the nominal surface without a point
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
@@ -135,9 +143,10 @@ using camber::BeyondModel;
 
 struct CompensateOptions {
   simulate::Progress progress;
-  std::size_t max_stock_crossings = 0;  ///< size of Compensation::stock; 0: none
+  std::function<void(const Outlook&)> outlook{};  ///< called once, before the rounds
+  std::size_t max_stock_crossings = 0;            ///< size of Compensation::stock; 0: none
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
-  /// Extra machine time that feeds and passes may take for the least error. Not given: as much as the tolerance takes.
+  /// Instead of the job's.
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< parameters for Compensation::band

@@ -54,6 +54,11 @@ struct Version {
   std::vector<Vec3> bending;  ///< TrialRunner::bending
 };
 
+/// Judged errors, each of an area.
+struct JudgedErrors {
+  std::vector<double> error_um, area_mm2;
+};
+
 class Loop {
  public:
   Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options);
@@ -76,7 +81,13 @@ class Loop {
   using Prepare = std::function<void(std::vector<Observation>&)>;
   using Fit = std::size_t(ShiftPath&, std::span<const Observation>, const FitShiftOptions&);  ///< fit_shift, fit_lifts
 
-  bool has(machine::Lever lever) const { return job_.compensation.has(lever); }
+  bool has(machine::Lever lever) const {
+    return job_.compensation.has(lever) && !(feed_unusable_ && lever == machine::Lever::feed);
+  }
+  /// Extra machine time for the least error; not given: as much as the tolerance takes.
+  std::optional<double> budget_percent() const {
+    return options_.time_budget_percent ? options_.time_budget_percent : job_.compensation.time_budget_percent;
+  }
   double tolerance_mm() const { return job_.compensation.half_width_um() / 1000; }
   /// Decides on splits. Where the control stops at every corner, a split would be a stop: the feed falls to nothing
   /// there, and the mark that this leaves is a new error, which the next round answers with new splits.
@@ -94,6 +105,7 @@ class Loop {
   void check_levers(const std::vector<bool>& selected);
   void begin_version(Version& version);
   void expect_hidden_rows(Trial& given);
+  void look_out(CompensationResult& out);
 
   // loop_rounds.cpp
   /// New shifts from the last trial's error, and their prediction. `prepare` may change the feeds of the path and the
@@ -108,12 +120,15 @@ class Loop {
   void record(CompensationResult& out, Round round);
   void take(CompensationResult& out);
   bool done(const CompensationResult& out, const StepModel& model);
+  bool worth_a_round(const CompensationResult& out, const StepModel& model);
   bool would_be_within(double effect);
+  JudgedErrors errors_after_shift(const Trial& trial, double effect);
   bool ask_for_lifts(Guard& guard, double deepest_um);
 
   // loop_levers.cpp
   bool met(const CompensationResult& out) const;
   void lower_feeds(CompensationResult& out, double percent);
+  bool feeds_pay(double percent);
   void step_with_feeds(CompensationResult& out, double percent);
   std::vector<PassRun> runs_after_shifts();
   bool cut_twice(CompensationResult& out, double percent);
@@ -149,6 +164,9 @@ class Loop {
   std::size_t active_ = 0;  ///< index of the version whose program the set-up has
   Version* now_ = nullptr;  ///< versions_[active_]
 
+  bool feed_unusable_ = false;  ///< no F word of the moves to compensate can be changed, and the job does not name feed
+  /// Fraction by which the last round lowered the 95th percentile; none where it was rejected, or is the first.
+  std::optional<double> last_gain_;
   double share_ = 1;                                    ///< fraction of a step taken; less after over-corrections
   std::vector<Observation> expected_;                   ///< observations for the first round; empty: as observed
   std::shared_ptr<const Trial> last_, best_, allowed_;  ///< allowed_: the best one that keeps the limits

@@ -13,6 +13,8 @@ namespace {
 constexpr std::array kRungs_percent{5.0, 10.0, 15.0, 25.0, 50.0, 100.0, 200.0};  // of extra time
 constexpr int kRungRounds = 2;
 constexpr int kBudgetRounds = 6;
+constexpr double kDefaultBudget_percent = 10;  // where the job names no levers
+constexpr double kPays = 0.1;        // of the 95th percentile: what feeds by default must be expected to bring
 constexpr double kTimeRoom = 0.003;  // by which a budget may be exceeded
 constexpr double kMinExtra = 0.005;  // less extra time is not worth a round
 constexpr double kWanted = 0.9;      // of the tolerance: what feeds and second cuts are chosen for
@@ -27,9 +29,10 @@ bool Loop::met(const CompensationResult& out) const {
 void Loop::spend_time(CompensationResult& out) {
   if (!has(machine::Lever::feed) && !has(machine::Lever::passes)) return;
   out.time_points.push_back({0, out.best});
-  const auto& budget = options_.time_budget_percent;
-  const std::vector<double> rungs =
-      budget ? std::vector<double>{*budget} : std::vector<double>(kRungs_percent.begin(), kRungs_percent.end());
+  const auto budget = budget_percent();
+  std::vector<double> rungs(kRungs_percent.begin(), kRungs_percent.end());
+  if (budget) rungs = {*budget};
+  if (!budget && job_.compensation.levers.empty()) rungs = {kDefaultBudget_percent};
   for (const double percent : rungs) {
     if (!budget && met(out)) return;
     allowed_s_ = (1 + percent / 100 + kTimeRoom) * given_s_;
@@ -52,7 +55,8 @@ void Loop::lower_feeds(CompensationResult& out, double percent) {
         least_feeds(*now_->path, setup_.program.moves, job_.machine, job_.compensation.min_feed_percent / 100);
     now_->feeds.emplace(*now_->path, setup_.program, splittable, least);
   }
-  const bool budget = options_.time_budget_percent.has_value();
+  const bool budget = budget_percent().has_value();
+  if (!budget && job_.compensation.levers.empty() && !feeds_pay(percent)) return;
   last_ = best_;
   const std::size_t before = out.best;
   for (int i = 0; i < (budget ? kBudgetRounds : kRungRounds); ++i) {
@@ -68,10 +72,24 @@ void Loop::lower_feeds(CompensationResult& out, double percent) {
   now_->feeds_stuck = out.best == before;
 }
 
+/// Returns whether lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves.
+bool Loop::feeds_pay(double percent) {
+  ShiftPath path = *now_->path;
+  path.set_shifts(best_->shifts);
+  FeedLever::set_fractions(path, best_->fractions);
+  const std::vector<Observation> all = best_->observed.of_path();
+  const std::vector<double> left_mm = left_by_shift_mm(path, all, fit_options());
+  std::vector<double> area_mm2;
+  for (const Observation& o : all) area_mm2.push_back(o.area_mm2);
+  const double budget_s = percent / 100 * given_s_;
+  const double expected_mm = now_->feeds->choose(path, all, left_mm, budget_s, kWanted * tolerance_mm()).error_mm;
+  return expected_mm <= (1 - kPays) * p95_of(left_mm, area_mm2);
+}
+
 void Loop::step_with_feeds(CompensationResult& out, double percent) {
   const std::shared_ptr<const Trial> from = last_;
   FeedLever& lever = *now_->feeds;
-  const double wanted_mm = options_.time_budget_percent ? 0.0 : kWanted * tolerance_mm();
+  const double wanted_mm = budget_percent() ? 0.0 : kWanted * tolerance_mm();
   const double program_s = setup_.program.feed.time_s;
   const double budget_s = std::max(0.0, (1 + percent / 100) * given_s_ - program_s);
   double planned_s = 0;
@@ -101,7 +119,7 @@ std::vector<PassRun> Loop::runs_after_shifts() {
 /// more. The best of the versions is active afterwards.
 bool Loop::cut_twice(CompensationResult& out, double percent) {
   if (!has(machine::Lever::passes)) return false;
-  const bool budget = options_.time_budget_percent.has_value();
+  const bool budget = budget_percent().has_value();
   activate(0);
   const std::vector<PassRun> runs = runs_after_shifts();
   const double wanted_mm = budget ? 0.0 : kWanted * tolerance_mm(), budget_s = percent / 100 * given_s_;
@@ -129,7 +147,7 @@ void Loop::compensate_version(std::unique_ptr<Version> version, CompensationResu
   predict_version(out);
   share_ = 1;
   converge(out);
-  if (options_.time_budget_percent || !met(out)) lower_feeds(out, percent);
+  if (budget_percent() || !met(out)) lower_feeds(out, percent);
   const Round &found = out.rounds[out.best], &old = out.rounds[best_round];
   if (found.machine_time_s > allowed_s_ || found.error_um.p95 >= old.error_um.p95) {
     best_ = best;

@@ -20,6 +20,8 @@ constexpr int kStiffenings = 12;    // of the path where its angles grow by more
 constexpr double kStiffer = 2.5;
 constexpr double kGuardReach_mm = 2.0;   // a lift fades out over this length, or ...
 constexpr double kGuardSmoothings = 8;   // ... so many smoothing lengths
+constexpr double kMinFall = 0.1;         // of the 95th percentile: a round that brings less is the last one
+constexpr double kFinest_um = 0.1;       // a shift of less is below the last decimal of most programs
 constexpr double kLeftOver = 0.25;       // of the tolerance: what a shift can still correct is not worth a round
 constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
 constexpr double kLateSplit_mm = 0.002;  // ... a later one this
@@ -64,6 +66,7 @@ FitShiftOptions Loop::fit_options() const { return fit_options(now_->stiffness, 
 
 void Loop::converge(CompensationResult& out) {
   StepModel model;
+  last_gain_.reset();
   while (!done(out, model)) {
     const Round from = out.rounds[out.best];
     const bool by_expectation = !expected_.empty();
@@ -71,9 +74,11 @@ void Loop::converge(CompensationResult& out) {
     const double now = out.rounds.back().error_um.rms;
     if (!by_expectation) model.learn(from.error_um.rms, from.split, share_, now);
     if (now < from.error_um.rms) {
+      last_gain_ = 1 - out.rounds.back().error_um.p95 / std::max(from.error_um.p95, 1e-9);
       take(out);
     } else {
       last_ = best_;
+      last_gain_.reset();
       share_ = std::max(kLeast, model.best_fraction(share_));
     }
   }
@@ -269,38 +274,51 @@ bool Loop::done(const CompensationResult& out, const StepModel& model) {
   const Round& best = out.rounds[out.best];
   const std::size_t made = out.rounds.size() - first_round_;  // the first one is that of the version as given
   const bool ready = out.best > 0 || within_tolerance(out.plain_before, c);
-  const bool nothing_left = best.split.correctable_p95_um <= kLeftOver * c.half_width_um();
-  const bool worth_it =
-      model.expected_rms_um(best.error_um.rms, best.split, share_) <= (1 - kMinGain) * best.error_um.rms ||
-      would_be_within(model.effect(share_));
-  const bool stalled = (ready && nothing_left) || (made > 1 && !worth_it);
+  const double left_um = c.goal == machine::Goal::best ? std::max(kMinFall * best.error_um.p95, kFinest_um)
+                                                       : kLeftOver * c.half_width_um();
+  const bool nothing_left = best.split.correctable_p95_um <= left_um;
+  const bool stalled = (ready && nothing_left) || (made > 1 && !worth_a_round(out, model));
   ended_ = stalled ? Stop::stalled : Stop::rounds;
   return stalled || static_cast<int>(made) > c.max_rounds;
 }
 
-/// Returns whether the best round, which is not within tolerance, is expected to come within it with the fraction
-/// `effect` of what shifts can still take away taken away.
-bool Loop::would_be_within(double effect) {
-  const Observed& observed = best_->observed;
-  if (effect <= 0 || within_tolerance(figures_of(*best_), job_.compensation)) return false;
+/// Returns whether another round is expected to be worth its prediction, after the first one of a version.
+bool Loop::worth_a_round(const CompensationResult& out, const StepModel& model) {
+  const Round& best = out.rounds[out.best];
+  if (would_be_within(model.effect(share_))) return true;
+  if (job_.compensation.goal == machine::Goal::best && last_gain_) return *last_gain_ > kMinFall;
+  return model.expected_rms_um(best.error_um.rms, best.split, share_) <= (1 - kMinGain) * best.error_um.rms;
+}
+
+/// The judged errors of a trial once the fraction `effect` of what shifts can still take away is taken away.
+JudgedErrors Loop::errors_after_shift(const Trial& trial, double effect) {
+  const Observed& observed = trial.observed;
   std::vector<Observation> judged;
-  std::vector<double> error_um, area_mm2;
+  JudgedErrors out;
   for (std::size_t i = 0; i < observed.points.size(); ++i) {
     if (!observed.judged(i)) continue;
     if (observed.compensated[i]) {
       judged.push_back(observed.points[i]);
       continue;
     }
-    error_um.push_back(1000 * observed.points[i].error_mm);
-    area_mm2.push_back(observed.points[i].area_mm2);
+    out.error_um.push_back(1000 * observed.points[i].error_mm);
+    out.area_mm2.push_back(observed.points[i].area_mm2);
   }
-  now_->path->set_shifts(best_->shifts);
+  now_->path->set_shifts(trial.shifts);
   const std::vector<double> left = left_by_shift_mm(*now_->path, judged, fit_options());
   for (std::size_t i = 0; i < judged.size(); ++i) {
-    error_um.push_back(1000 * (judged[i].error_mm + effect * (left[i] - judged[i].error_mm)));
-    area_mm2.push_back(judged[i].area_mm2);
+    out.error_um.push_back(1000 * (judged[i].error_mm + effect * (left[i] - judged[i].error_mm)));
+    out.area_mm2.push_back(judged[i].area_mm2);
   }
-  return within_tolerance(error_um, area_mm2, job_.compensation);
+  return out;
+}
+
+/// Returns whether the best round, which is not within tolerance, is expected to come within it with the fraction
+/// `effect` of what shifts can still take away taken away.
+bool Loop::would_be_within(double effect) {
+  if (effect <= 0 || within_tolerance(figures_of(*best_), job_.compensation)) return false;
+  const JudgedErrors expected = errors_after_shift(*best_, effect);
+  return within_tolerance(expected.error_um, expected.area_mm2, job_.compensation);
 }
 
 }  // namespace camber::compensate

@@ -108,7 +108,16 @@ void Loop::start(CompensationResult& out) {
   out.surface_before = last_->surface;
   out.loads_before = last_->loads;
   record(out, {});
+  out.feed_unusable = feed_unusable_;
+  look_out(out);
   out.depth_before = depth_of(last_->surface, last_->observed, depth_limit_um_, true);
+}
+
+/// What shifts are expected to leave, before the first of them is predicted.
+void Loop::look_out(CompensationResult& out) {
+  const JudgedErrors left = errors_after_shift(*given_trial_, 1);
+  out.outlook = {out.rounds.front().error_um.p95, p95_of(left.error_um, left.area_mm2)};
+  if (options_.outlook) options_.outlook(out.outlook);
 }
 
 void Loop::read_given(const simulate::Prediction& prediction, CompensationResult& out) {
@@ -124,7 +133,13 @@ void Loop::read_given(const simulate::Prediction& prediction, CompensationResult
 void Loop::check_levers(const std::vector<bool>& selected) {
   check_compensated(setup_.program, selected, diagnostics_);
   diagnostics_.throw_if_errors();
-  if (has(machine::Lever::feed)) check_feeds(setup_.program, selected, diagnostics_);
+  if (job_.compensation.levers.empty()) {
+    Diagnostics unusable;
+    check_feeds(setup_.program, selected, unusable);
+    feed_unusable_ = !unusable.all().empty();
+  } else if (has(machine::Lever::feed)) {
+    check_feeds(setup_.program, selected, diagnostics_);
+  }
   if (has(machine::Lever::passes)) {
     simulate::refuse_rotary_motion(setup_.program.rotary.get(), setup_.program.text,
                                    "levers names \"passes\", which cuts a run twice", diagnostics_);

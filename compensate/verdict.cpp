@@ -133,6 +133,10 @@ bool within_tolerance(const std::vector<double>& error_um, const std::vector<dou
   return removal::error_figures(error_um, area_mm2).p95 <= asked.tolerance_um;
 }
 
+double p95_of(const std::vector<double>& error_um, const std::vector<double>& area_mm2) {
+  return error_um.empty() ? 0 : removal::error_figures(error_um, area_mm2).p95;
+}
+
 ContourCause contour_cause_of(Cause cause, const std::vector<PointCause>& points,
                               const std::vector<removal::SurfacePoint>& surface) {
   constexpr double kMost = 0.5;

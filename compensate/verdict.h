@@ -43,6 +43,9 @@ enum class ContourCause { none, lag, path_tolerance, corner_law };
 ContourCause contour_cause_of(Cause cause, const std::vector<PointCause>& points,
                               const std::vector<removal::SurfacePoint>& surface);
 
+/// 95th percentile of magnitudes, by area; 0 where there are none.
+double p95_of(const std::vector<double>& error_um, const std::vector<double>& area_mm2);
+
 /// A part of the remaining error, and the lines of the program with most of it.
 struct CauseFigure {
   Cause cause = Cause::correctable;

@@ -131,8 +131,15 @@ enum class Lever : std::uint8_t {
   passes  ///< runs of cuts that are made twice, where it does
 };
 
+/// Where the rounds of a compensation end.
+enum class Goal : std::uint8_t {
+  best,      ///< at the least error: where a round lowers the 95th percentile by no more than a tenth
+  tolerance  ///< where what a shift can still correct is small against the tolerance
+};
+
 struct CompensationSettings {
   double tolerance_um = 1.0;
+  Goal goal = Goal::best;
   Reference reference = Reference::commanded;
   std::optional<std::array<double, 2>> profile_um;  ///< band of the finished surface; not given: tolerance_um
   double max_shift_mm = 0.1;
@@ -145,8 +152,13 @@ struct CompensationSettings {
   }
   /// Half of the width of the band.
   double half_width_um() const { return profile_um ? ((*profile_um)[1] - (*profile_um)[0]) / 2 : tolerance_um; }
-  std::vector<Lever> levers{Lever::shift};  ///< shift is always among them
-  bool has(Lever lever) const { return std::ranges::find(levers, lever) != levers.end(); }
+  std::vector<Lever> levers;  ///< shift is always among them; empty: shift, and feed where F words can be changed
+  bool has(Lever lever) const {
+    return levers.empty() ? lever != Lever::passes : std::ranges::find(levers, lever) != levers.end();
+  }
+  /// Extra machine time for feed and passes: the least error within it. Not given: as much as the tolerance takes, up
+  /// to 10 % where the job does not name its levers, else to 200 %.
+  std::optional<double> time_budget_percent;
   double min_feed_percent = 20;                 ///< of the programmed feed; below it edges rub
   double pass_allowance_mm = 0;                 ///< what the first of two passes leaves; 0: chosen
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path

@@ -11,6 +11,7 @@ inline constexpr std::array<std::string_view, 7> kToolTypeWords{"ball",         
                                                                 "tapered_ball", "chamfer", "general"};
 inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static"};
 inline constexpr std::array<std::string_view, 2> kReferenceWords{"commanded", "machine"};
+inline constexpr std::array<std::string_view, 2> kGoalWords{"best", "tolerance"};
 inline constexpr std::array<std::string_view, 3> kLeverWords{"shift", "feed", "passes"};
 inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
@@ -22,6 +23,7 @@ inline constexpr NumberRange kLineNumber{.min = 1, .max = 2e9, .whole = true};
 inline constexpr NumberRange kRounds{.min = 1, .max = 1000, .whole = true};
 inline constexpr NumberRange kHelixDeg{.min = 0, .max = 80};
 inline constexpr NumberRange kRatio{.min = 0, .max = 1, .above_min = true};
+inline constexpr NumberRange kTimeBudget{.min = 0, .max = 1000};
 inline constexpr NumberRange kMinFeedPercent{.min = 1, .max = 100};
 inline constexpr NumberRange kAngleGrowthDeg{.min = 0, .max = 90, .above_min = true};
 inline constexpr NumberRange kRotationStepDeg{.min = 0, .max = 10, .above_min = true};

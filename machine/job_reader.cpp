@@ -8,6 +8,7 @@
 #include "machine/job_keys.h"
 #include "machine/job_programs.h"
 #include "machine/job_tables.h"
+#include "machine/levers.h"
 #include "machine/machine_presets.h"
 #include "machine/material_reader.h"
 #include "machine/mode_reader.h"
@@ -166,28 +167,19 @@ void read_profile(TomlTable& table, CompensationSettings& compensation) {
 }
 
 void read_levers(TomlTable& table, CompensationSettings& compensation) {
-  constexpr std::string_view kWanted = "a list of \"shift\", \"feed\" and \"passes\"";
-  const auto names = table.text_list("levers", kWanted);
+  const auto names = table.text_list("levers", kWantedLevers);
   if (!names) return;
-  compensation.levers.clear();
-  for (const std::string& name : *names) {
-    const auto word = std::ranges::find(kLeverWords, name);
-    if (word == kLeverWords.end()) {
-      table.error_at("levers", fmt::format("levers names \"{}\"; {} was expected", name, kWanted), "value-choice");
-      continue;
-    }
-    compensation.levers.push_back(static_cast<Lever>(word - kLeverWords.begin()));
-  }
-  if (!compensation.has(Lever::shift))
-    table.error_at("levers",
-                   "levers does not name \"shift\", which every compensation needs; [\"shift\", \"feed\"] was expected",
-                   "value-choice");
+  const LeverNames read = levers_of(*names);
+  compensation.levers = read.levers;
+  for (const std::string& message : read.errors) table.error_at("levers", message, "value-choice");
 }
 
 void read_compensation(TomlTable table, const std::map<int, Tool>& tools, CompensationSettings& compensation) {
   read_numbers<CompensationSettings>(table, kCompensationKeys, compensation);
   compensation.max_rounds = static_cast<int>(table.number("max_rounds", kRounds, compensation.max_rounds));
   if (table.choice("reference", kReferenceWords, 0) == 1) compensation.reference = Reference::machine;
+  if (table.choice("goal", kGoalWords, 0) == 1) compensation.goal = Goal::tolerance;
+  compensation.time_budget_percent = table.optional_number("time_budget_percent", kTimeBudget);
   read_profile(table, compensation);
   read_levers(table, compensation);
   if (const auto operations = table.table("operations")) compensation.operations = read_operations(*operations, tools);

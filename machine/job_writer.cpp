@@ -90,9 +90,11 @@ std::string compensation_text(const CompensationSettings& c) {
   std::string out = "\n[compensation]\n" + toml_lines<CompensationSettings>(kCompensationKeys, c);
   out += toml_line("max_rounds", c.max_rounds, kAsIs);
   out += toml_line("reference", kReferenceWords[c.reference == Reference::machine ? 1 : 0]);
+  out += toml_line("goal", kGoalWords[c.goal == Goal::tolerance ? 1 : 0]);
   std::vector<std::string_view> levers;
   for (const Lever lever : c.levers) levers.push_back(kLeverWords[static_cast<std::size_t>(lever)]);
-  out += fmt::format("levers = [\"{}\"]\n", fmt::join(levers, "\", \""));
+  if (!levers.empty()) out += fmt::format("levers = [\"{}\"]\n", fmt::join(levers, "\", \""));
+  if (c.time_budget_percent) out += toml_line("time_budget_percent", *c.time_budget_percent, kAsIs);
   if (c.profile_um) out += fmt::format("profile_um = [{}, {}]\n", (*c.profile_um)[0], (*c.profile_um)[1]);
   if (c.work_offset_mm) out += fmt::format("work_offset_mm = {}\n", point_text(*c.work_offset_mm));
   return c.operations.given() ? out + operations_text("compensation.operations", c.operations) : out;

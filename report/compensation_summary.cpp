@@ -73,6 +73,16 @@ Json depth(const compensate::Depth& d) {
   return j;
 }
 
+/// What was used and what it cost.
+Json levers_used(const compensate::CompensationResult& c) {
+  const compensate::Round& best = c.rounds[c.best];
+  return {{"shift_max_um", 1000 * c.max_shift_mm},
+          {"blocks_changed", c.blocks_changed},
+          {"feed_changes", best.slowed},
+          {"repeated_runs", best.repeated},
+          {"extra_time_s", c.feed_after.time_s - c.feed_before.time_s}};
+}
+
 Json rounds(const compensate::CompensationResult& c) {
   Json out = Json::array();
   for (const auto& r : c.rounds) {
@@ -164,6 +174,8 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["after"] = plain(c.plain_after);
   j["within_tolerance"] = c.within_tolerance;
   j["better_than_given"] = c.better;
+  j["achievable_um"] = {{"given_p95", c.outlook.given_p95_um}, {"p95", c.outlook.achievable_p95_um}};
+  j["levers_used"] = levers_used(c);
   j["depth_limit_um"] = c.depth_limit_um;
   j["depth_limit_given"] = c.own_depth_limit;
   j["unseen_mm2"] = c.unseen_mm2;
@@ -283,6 +295,18 @@ std::string passes_text(const compensate::CompensationResult& c) {
   return out + " of the given program\n";
 }
 
+/// "levers used: shift to 43.2 um (120 blocks), 14 feed changes; +2.1 s (+1.9 %)".
+std::string levers_text(const compensate::CompensationResult& c) {
+  const compensate::Round& best = c.rounds[c.best];
+  std::string out = fmt::format("levers used: shift to {:.1f} um ({} blocks)", 1000 * c.max_shift_mm, c.blocks_changed);
+  if (best.slowed > 0) out += fmt::format(", {} feed changes", best.slowed);
+  if (best.repeated > 0) out += fmt::format(", {} runs cut twice", best.repeated);
+  const double extra_s = c.feed_after.time_s - c.feed_before.time_s;
+  const double percent = c.feed_before.time_s > 0 ? 100 * extra_s / c.feed_before.time_s : 0;
+  out += fmt::format("; {:+.1f} s ({:+.1f} %)\n", extra_s, percent);
+  return c.feed_unusable ? out + "lower feeds were not tried: no feed of these moves can be changed\n" : out;
+}
+
 /// Machine time against error; empty where no lever takes time.
 std::string time_points_text(const compensate::CompensationResult& c) {
   if (c.time_points.empty()) return {};
@@ -365,7 +389,7 @@ const char* reason(compensate::Stop stop) {
 }  // namespace
 
 std::string compensate_text(const compensate::CompensationResult& c, double compute_s) {
-  std::string out = rounds_text(c) + time_points_text(c) + passes_text(c);
+  std::string out = levers_text(c) + rounds_text(c) + time_points_text(c) + passes_text(c);
   fmt::format_to(std::back_inserter(out), "stopped: {}\n", reason(c.stop));
   out += plain_figures_text(c) + split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) +
          checks_text(c);

@@ -53,6 +53,9 @@ std::vector<std::string> shortfalls(const CompensationResult& c, const Compensat
   if (!c.within_part) out.push_back(too_deep_sentence(c.depth_after, c.depth_limit_um));
   if (c.within_tolerance) return out;
   out.push_back(figure_sentence(c, asked));
+  if (!asked.profile_um && c.outlook.achievable_p95_um > asked.tolerance_um)
+    out.push_back(fmt::format("before the rounds, shifts alone were expected to leave {:.2f} um (95th percentile)",
+                              c.outlook.achievable_p95_um));
   for (const auto& cause : c.causes) out.push_back(compensate::sentence(cause));
   return out;
 }
@@ -114,6 +117,11 @@ VerdictText verdict_text(const CompensationResult& c, const CompensationSettings
 }
 
 VerdictText verdict_text(const Verification& v, const CompensationSettings& asked) { return verdict_of(v, asked); }
+
+std::string outlook_sentence(const compensate::Outlook& outlook) {
+  return fmt::format("95th percentile as given {:.2f} um; shifts are expected to leave {:.2f} um", outlook.given_p95_um,
+                     outlook.achievable_p95_um);
+}
 
 std::string verify_text(const Verification& v, double compute_s) {
   std::string out = plain_head() + plain_row("error", v.plain.error_um) +

@@ -22,6 +22,9 @@ VerdictText verdict_text(const compensate::CompensationResult& result, const mac
 /// The same of a program that was judged again.
 VerdictText verdict_text(const compensate::Verification& verification, const machine::CompensationSettings& asked);
 
+/// "95th percentile as given 37.55 um; shifts are expected to leave 2.31 um".
+std::string outlook_sentence(const compensate::Outlook& outlook);
+
 /// Its figures, for the terminal.
 std::string verify_text(const compensate::Verification& verification, double compute_s);
 

@@ -9,6 +9,7 @@
 #include "compensate/recheck.h"
 #include "compensate/verify.h"
 #include "feedmodel/fitted_range.h"
+#include "machine/levers.h"
 #include "nc/interpreter.h"
 #include "simulate/rotary_motion.h"
 
@@ -36,9 +37,22 @@ std::string header_of(const machine::Job& job, const compensate::CompensationRes
   return hash ? lines + "\nINPUTS " + compensate::hash_of_inputs(job) : lines;
 }
 
+/// The job with the levers of the request. Throws InputError.
+machine::Job with_levers(const machine::Job& job, const std::vector<std::string>& names, Diagnostics& diagnostics) {
+  machine::Job out = job;
+  if (names.empty()) return out;
+  const machine::LeverNames read = machine::levers_of(names);
+  for (const std::string& message : read.errors)
+    diagnostics.add({Severity::error, {job.path, 0, 0}, "--levers: " + message, "value-choice", {}});
+  diagnostics.throw_if_errors();
+  out.compensation.levers = read.levers;
+  return out;
+}
+
 compensate::CompensateOptions options_of(const CompensateRequest& request) {
   compensate::CompensateOptions options;
   options.progress = request.progress;
+  options.outlook = request.outlook;
   for (const auto& u : request.uncertainty)
     for (auto& group : compensate::read_uncertainty(u)) options.uncertainty.push_back(std::move(group));
   options.max_stock_crossings = request.max_stock_crossings;
@@ -53,7 +67,8 @@ compensate::CompensateOptions options_of(const CompensateRequest& request) {
 CompensatedJob compensate_job(const machine::Job& given, const CompensateRequest& request, Diagnostics& diagnostics) {
   compensate::CompensateOptions options = options_of(request);
   std::optional<compensate::MeasuredFit> fit;
-  CompensatedJob out{as_measured(given, request, diagnostics, options.progress, fit), {}};
+  CompensatedJob out{
+      as_measured(with_levers(given, request.levers, diagnostics), request, diagnostics, options.progress, fit), {}};
   const machine::Job& job = out.job;
   if (request.header || request.header_hash)
     options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };

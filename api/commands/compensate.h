@@ -1,5 +1,6 @@
 #pragma once
 // The work of camber compensate: a job, as it was measured where points are given, compensated.
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,9 @@ struct CompensateRequest {
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   bool header = false, header_hash = false;
   std::size_t max_stock_crossings = 0;  ///< see compensate::CompensateOptions
+  std::vector<std::string> levers{};    ///< by name, instead of the job's; empty: the job's
   simulate::Progress progress;
+  std::function<void(const compensate::Outlook&)> outlook{};  ///< see compensate::CompensateOptions
 };
 
 struct CompensatedJob {

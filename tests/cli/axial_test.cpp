@@ -99,7 +99,8 @@ void write_plane(const TempFolder& folder, double degrees) {
          "2\nhelix_deg = 30.0\noverhang_mm = 20.0\nyoungs_modulus_GPa = 600.0\nroot_axial_stiffness_N_per_um = "
          "10.0\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 1500.0\nkte_N_per_mm = 20.0\nkre_N_per_mm = 20.0\n[stock]\n"
       << "box_mm = [[0, 0, -3], [" << kLong << ", " << kWide << ", " << kWide * slope + 1
-      << "]]\nallowance_mm = 0.2\n[simulation]\nvoxel_mm = 0.1\n[compensation]\ntolerance_um = 0.5\nmax_rounds = "
+      << "]]\nallowance_mm = 0.2\n[simulation]\nvoxel_mm = 0.1\n[compensation]\nlevers = [\"shift\"]\ntolerance_um = "
+         "0.5\nmax_rounds = "
          "6\nmax_shift_mm = 0.1\n";
   folder.write("job.toml", job.str());
 }

@@ -36,7 +36,8 @@ void write_job(const TempFolder& folder, const std::string& more = "", const std
       "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
       "overhang_mm = 30.0\nhelix_deg = 30\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n"
       "box_mm = [[0, -0.5, -2], [8, 2, 0]]\nallowance_mm = 0.1\n[simulation]\nvoxel_mm = 0.2\n"
-      "coupling = \"rigid\"\n[compensation]\ntolerance_um = 10.0\nmax_overcut_um = 6.0\nmax_rounds = 3\n" +
+      "coupling = \"rigid\"\n[compensation]\nlevers = [\"shift\"]\ntolerance_um = 10.0\nmax_overcut_um = "
+      "6.0\nmax_rounds = 3\n" +
           more);
 }
 
@@ -70,6 +71,28 @@ TEST(CompensateCommand, WritesProgramAndFiguresAndTheSameBytesAgain) {
     EXPECT_LE(end - from, 80u) << run.out.substr(from, end - from);
     from = end + 1;
   }
+}
+
+TEST(CompensateCommand, TakesLeversByNameAndSaysWhatIsInReachFirst) {
+  const TempFolder folder;
+  write_job(folder);
+  const auto run = run_camber(folder, "compensate job.toml -o a.nc --levers shift,feed --json a.json");
+  EXPECT_EQ(run.status, 0) << run.err;
+  const auto json = nlohmann::json::parse(file_text(folder / "a.json"));
+  EXPECT_EQ(json["achievable_um"]["given_p95"], json["before_um"]["p95"]);
+  EXPECT_LT(json["achievable_um"]["p95"], json["before_um"]["p95"]);
+  EXPECT_EQ(json["levers_used"]["blocks_changed"], json["blocks"]["changed"]);
+  EXPECT_TRUE(run.out.starts_with("95th percentile as given ")) << run.out;
+  EXPECT_NE(run.out.find("\nlevers used: shift to "), std::string::npos) << run.out;
+  const auto wrong = run_camber(folder, "compensate job.toml -o b.nc --levers speed,shift");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.err.find("error: --levers: levers names \"speed\"; a list of \"shift\", \"feed\" and \"passes\" was "
+                           "expected [value-choice]"),
+            std::string::npos)
+      << wrong.err;
+  const auto idle = run_camber(folder, "compensate job.toml -o b.nc --levers shift --time-budget 5");
+  EXPECT_EQ(idle.status, 1);
+  EXPECT_NE(idle.err.find("a time budget of 5 % has no lever to use it"), std::string::npos) << idle.err;
 }
 
 TEST(CompensateCommand, NothingIsWrittenWhereNothingIsBetter) {

@@ -50,6 +50,7 @@ box_mm = [[2, 2, -1], [5, 5, 0]]
 [simulation]
 voxel_mm = 0.2
 [compensation]
+levers = ["shift"]
 max_rounds = 1
 tolerance_um = 0.05
 max_overcut_um = 20.0

@@ -246,7 +246,7 @@ TEST(DrillingCompensation, MovesTheWallAndLeavesTheCyclesAsTheyStand) {
   const std::string cycles = kDrillHead + "G98 G83 X12 Y6 Z-8 R1 Q3 F240\nX20\nG80\n";
   write_job(folder, kHead + cycles + kMillHead + "G0 X-4 Y-1.5 Z5\nG0 Z-3\nG1 X28 F600\nG0 Z5\nM30\n",
             tests::replaced(kMill, "12.0", "20.0") + kDrill, "box_mm = [[0, 0, -6], [24, 12, 0]]",
-            "coupling = \"rigid\"\n[compensation]\ntolerance_um = 0.5\nmax_overcut_um = 10\n");
+            "coupling = \"rigid\"\n[compensation]\nlevers = [\"shift\"]\ntolerance_um = 0.5\nmax_overcut_um = 10\n");
   const auto run = run_camber(folder, "compensate job.toml -o c.nc --json c.json");
   ASSERT_TRUE(run.status == 0 || run.status == 3) << run.err;
   const std::string text = tests::file_text(folder / "c.nc");

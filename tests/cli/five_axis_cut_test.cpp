@@ -287,7 +287,7 @@ TEST(CompensateFiveAxes, ChangesCoordinatesAndNothingElse) {
     write_job(folder, program);
     std::string job = tests::file_text(folder / "job.toml");
     job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nflute_length_mm = 40.0\nhelix_deg = 30.0");
-    job.replace(job.find("coupling = \"rigid\""), 18, "[compensation]\ntolerance_um = 0.5");
+    job.replace(job.find("coupling = \"rigid\""), 18, "[compensation]\nlevers = [\"shift\"]\ntolerance_um = 0.5");
     folder.write("job.toml", job);
     const auto run = run_camber(folder, "compensate job.toml -o out.nc --json c.json");
     const std::string out = tests::file_text(folder / "out.nc");
@@ -367,7 +367,8 @@ TEST(CompensateFiveAxes, TiltedFramesAreCompensatedInTheirOwnCoordinates) {
     write_job(folder, program);
     std::string job = tests::file_text(folder / "job.toml");
     job.replace(job.find("overhang_mm = 30.0"), 18, "overhang_mm = 40.0\nflute_length_mm = 40.0\nhelix_deg = 30.0");
-    job.replace(job.find("coupling = \"rigid\""), 18, "[compensation]\ntolerance_um = 0.5\nmax_rounds = 1");
+    job.replace(job.find("coupling = \"rigid\""), 18,
+                "[compensation]\nlevers = [\"shift\"]\ntolerance_um = 0.5\nmax_rounds = 1");
     folder.write("job.toml", job);
     const auto predicted = run_camber(folder, "predict job.toml -o result --json p.json");
     ASSERT_EQ(predicted.status, 0) << predicted.err;

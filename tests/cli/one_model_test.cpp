@@ -38,7 +38,8 @@ constexpr const char* kJob =
     "program = \"p.nc\"\nmachine = \"m.toml\"\n[tool.1]\ntype = \"flat\"\ndiameter_mm = 4.0\nflutes = 2\n"
     "overhang_mm = 16.0\nhelix_deg = 30\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n"
     "box_mm = [[0, -0.5, -2], [8, 2, 0]]\nallowance_mm = 0.1\n[simulation]\nvoxel_mm = 0.4\n"
-    "coupling = \"rigid\"\n[compensation]\ntolerance_um = 3.0\nmax_overcut_um = 60.0\nmax_rounds = 1\n";
+    "coupling = \"rigid\"\n[compensation]\nlevers = [\"shift\"]\ntolerance_um = 3.0\nmax_overcut_um = 60.0\nmax_rounds "
+    "= 1\n";
 
 class OneModel : public testing::TestWithParam<const char*> {};
 

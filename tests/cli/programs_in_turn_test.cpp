@@ -24,7 +24,7 @@ void write_job(const TempFolder& folder) {
                "program = [\"first.nc\", \"second.nc\"]\nmachine = \"preset:vmc-40\"\n[tool.1]\ntype = \"flat\"\n"
                "diameter_mm = 6.0\nflutes = 2\noverhang_mm = 20.0\n[material]\nktc_MPa = 800\nkrc_MPa = 300\n"
                "[stock]\nbox_mm = [[0, 0, -5], [20, 20, 0]]\nassumed = [\"box_mm\"]\n[simulation]\nvoxel_mm = 0.4\n"
-               "coupling = \"rigid\"\n[compensation]\ntolerance_um = 2.0\n");
+               "coupling = \"rigid\"\n[compensation]\nlevers = [\"shift\"]\ntolerance_um = 2.0\n");
 }
 
 TEST(ProgramsInTurn, ArePredictedOnOneBlank) {

@@ -54,6 +54,7 @@ machine::Job plane_job(const tests::TempFolder& folder) {
   job.compensation.max_rounds = 2;
   job.compensation.tolerance_um = 0.1;
   job.compensation.max_overcut_um = 50;
+  job.compensation.levers = {machine::Lever::shift};
   return job;
 }
 

@@ -84,7 +84,8 @@ TEST(DrawnJudgeSlow, FindsWhatAShiftCanCorrectGoneFromTheWallOfSample06) {
   Diagnostics diagnostics;
   machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/06-wall/job.toml", diagnostics);
   job.simulation.coupling = machine::Coupling::rigid;  // the judge cuts with a tool whose bending does not thin chips
-  job.compensation.tolerance_um = 0.2;            // under what the judge is asked for, or the tolerance would be judged
+  job.compensation.tolerance_um = 0.2;  // under what the judge is asked for, or the tolerance would be judged
+  job.compensation.levers = {machine::Lever::shift};
   job.machine.control.least_increment_mm = 1e-5;  // the correction is judged, not the 0.5 um that three decimals cost
   const CompensationResult c = compensate(job, diagnostics, {});
   const auto program = [&](const std::string& text) {

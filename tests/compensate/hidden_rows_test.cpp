@@ -150,6 +150,7 @@ machine::Job lagging_job(const tests::TempFolder& folder) {
   job.simulation.coupling = machine::Coupling::rigid;
   job.compensation.max_rounds = 3;
   job.compensation.tolerance_um = 1;
+  job.compensation.levers = {machine::Lever::shift};
   job.compensation.max_overcut_um = 50;
   return job;
 }

@@ -222,12 +222,37 @@ TEST(JobReader, ReadsLevers) {
   EXPECT_TRUE(result.job.compensation.has(Lever::passes));
   EXPECT_EQ(result.job.compensation.min_feed_percent, 30);
   EXPECT_EQ(result.job.compensation.pass_allowance_mm, 0.03);
-  EXPECT_FALSE(read(kJob).job.compensation.has(Lever::feed));
+  EXPECT_TRUE(read(kJob).job.compensation.has(Lever::feed)) << "by default";
+  EXPECT_FALSE(read(kJob).job.compensation.has(Lever::passes));
+  EXPECT_FALSE(read(with_more("[compensation]\nlevers = [\"shift\"]\n")).job.compensation.has(Lever::feed));
   const Result back = read(replaced(replaced(to_toml(result.job), result.job.program, "finish.nc"),
                                     result.job.machine_path, "machine.toml"));
   EXPECT_EQ(back.messages, "");
   EXPECT_EQ(back.job.compensation.levers, result.job.compensation.levers);
   EXPECT_EQ(back.job.compensation.pass_allowance_mm, 0.03);
+}
+
+TEST(JobReader, ReadsGoalAndTimeBudget) {
+  const CompensationSettings plain = read(kJob).job.compensation;
+  EXPECT_EQ(plain.goal, Goal::best);
+  EXPECT_FALSE(plain.time_budget_percent);
+  const Result result = read(with_more("[compensation]\ngoal = \"tolerance\"\ntime_budget_percent = 0\n"));
+  EXPECT_EQ(result.messages, "");
+  EXPECT_EQ(result.job.compensation.goal, Goal::tolerance);
+  EXPECT_EQ(result.job.compensation.time_budget_percent, std::optional(0.0));
+  const Result back = read(replaced(replaced(to_toml(result.job), result.job.program, "finish.nc"),
+                                    result.job.machine_path, "machine.toml"));
+  EXPECT_EQ(back.messages, "");
+  EXPECT_EQ(back.job.compensation.goal, Goal::tolerance);
+  EXPECT_EQ(back.job.compensation.time_budget_percent, std::optional(0.0));
+  EXPECT_TRUE(back.job.compensation.levers.empty()) << "levers by default stay so";
+  EXPECT_EQ(read(with_more("[compensation]\ngoal = \"least\"\ntime_budget_percent = -1\n")).messages,
+            "job.toml:14:8: error: goal is \"least\"; \"best\" or \"tolerance\" was expected [value-choice]\n"
+            "    goal = \"least\"\n"
+            "           ^\n"
+            "job.toml:15:23: error: time_budget_percent is -1; a number from 0 to 1000 was expected [value-range]\n"
+            "    time_budget_percent = -1\n"
+            "                          ^");
 }
 
 TEST(JobReader, RefusesLeversThatAreNone) {

@@ -90,7 +90,7 @@ BLANK = "box_mm = [[0, 0, -3], [9, 8, 0]]"
 
 def job(program, tools, material, coupling, stock=BLANK, dialect="fanuc"):
     return ('program = "%s"\nmachine = "%s.toml"\n%s\n[material]\n%s\n[stock]\n%s\n[simulation]\nvoxel_mm = 0.2\n'
-            'coupling = "%s"\n[compensation]\ntolerance_um = 1.0\nmax_shift_mm = 0.1\nmax_rounds = 2\n'
+            'coupling = "%s"\n[compensation]\nlevers = ["shift"]\ntolerance_um = 1.0\nmax_shift_mm = 0.1\nmax_rounds = 2\n'
             % (program, dialect, tools, MATERIALS[material], stock, coupling))
 
 

@@ -30,6 +30,11 @@ TEST(VerdictText, JudgesTheEmittedProgramAndNamesTheCauses) {
   EXPECT_EQ(v.reasons, (std::vector<std::string>{
                            "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14 (15 as emitted); "
                            "a shorter tool would remove it"}));
+  c.outlook = {37.55, 9.9};
+  EXPECT_EQ(verdict_text(c, asked).reasons.front(),
+            "before the rounds, shifts alone were expected to leave 9.90 um (95th percentile)");
+  c.outlook.achievable_p95_um = 4.9;
+  EXPECT_EQ(verdict_text(c, asked).reasons.size(), 1u) << "within reach of a shift: nothing to say";
 }
 
 TEST(VerdictText, IsOnTheBandOrTheDeflectionWhereTheJobAsksForIt) {

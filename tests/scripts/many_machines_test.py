@@ -95,7 +95,7 @@ class SameBytes(unittest.TestCase):
     def test_compensate_by_mpi(self):
         self.needs("mpirun")
         job = (self.folder / "job.toml").read_text().replace('"rigid"', '"static"').replace("= 0.5", "= 0.8")
-        (self.folder / "compensated.toml").write_text(job + "[compensation]\ntolerance_um = 1.0\nmax_rounds = 1\n")
+        (self.folder / "compensated.toml").write_text(job + "[compensation]\nlevers = ['shift']\ntolerance_um = 1.0\nmax_rounds = 1\n")
         lines = (self.folder / "raster.nc").read_text().split("\n")
         (self.folder / "compensated.nc").write_text("\n".join(lines[:8] + ["M30", ""]))
         (self.folder / "compensated.toml").write_text(

@@ -20,7 +20,8 @@ inline std::string wall_job(double voxel_mm = 0.2, const std::string& program = 
          "overhang_mm = 30.0\nhelix_deg = 30\n[material]\nktc_MPa = 2000.0\nkrc_MPa = 700.0\n[stock]\n"
          "box_mm = [[0, -0.5, -2], [8, 2, 0]]\nallowance_mm = 0.1\n[simulation]\nvoxel_mm = " +
          std::to_string(voxel_mm) +
-         "\ncoupling = \"rigid\"\n[compensation]\ntolerance_um = 10.0\nmax_overcut_um = 6.0\nmax_rounds = 3\n";
+         "\ncoupling = \"rigid\"\n[compensation]\nlevers = [\"shift\"]\ntolerance_um = 10.0\nmax_overcut_um = "
+         "6.0\nmax_rounds = 3\n";
 }
 
 /// p.nc, machine.toml and job.toml; `folder` ends with a slash, or is empty.
