@@ -255,7 +255,7 @@ TEST(BadInput, GapInATraceIsAWarningAndAnErrorWhenStrict) {
 TEST(StandardOutput, ThatIsFullIsAnError) {
   const TempFolder folder;
   folder.write("p.nc", std::string(kHeader) + "T1 M6\nS3000 M3\n" + kCut);
-  const CamberRun run = run_camber(folder, "check -q p.nc > /dev/full 2> said.txt < /dev/null #");
+  const CamberRun run = run_camber(folder, "check p.nc > /dev/full 2> said.txt < /dev/null #");
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(tests::file_text(folder / "said.txt"),
             "camber: error: standard output cannot be written to its end (is the disk full?) [file-unwritable]\n");
