@@ -29,8 +29,8 @@ using machine::Job;
 
 constexpr double kStep = 0.2;        // of a logarithm, for slopes: large against the noise of a grid
 constexpr double kLeastStep = 0.05;  // of a logarithm, that corrects slopes: less is the noise of a grid
-constexpr double kNear = 0.05;       // of a logarithm, from where slopes were found
-constexpr int kSlopeRounds = 3;
+constexpr double kNear = 0.1;        // of a logarithm, from where slopes were found
+constexpr int kSlopeRounds = 2;
 constexpr double kLongest = 0.7;         // of a logarithm, a round
 constexpr double kDetermined = 0.5;      // greatest standard error of a logarithm
 constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day

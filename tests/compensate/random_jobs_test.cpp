@@ -23,8 +23,8 @@ std::string rows_program(double slope_rad, double row_mm, double feed_mm_per_min
   std::string out = "G21 G90 G17 G40 G49 G80\nT1 M6\nG54 S3000 M3\nG0 X8. Y-4. Z12.\n";
   const double c = std::cos(slope_rad), s = std::sin(slope_rad);
   for (double along = -1.2; along < 3.6; along += row_mm)
-    out += fmt::format("G0 X8. Y{:.4f}\nZ{:.4f}\nG1 X-3. F{:.0f}\nG0 Z12.\n", along * c - 3 * s,
-                       along * s + 3 * c - 3, feed_mm_per_min);
+    out += fmt::format("G0 X8. Y{:.4f}\nZ{:.4f}\nG1 X-3. F{:.0f}\nG0 Z12.\n", along * c - 3 * s, along * s + 3 * c - 3,
+                       feed_mm_per_min);
   return out + "M5\nM30\n";
 }
 
@@ -32,8 +32,8 @@ machine::Job random_job(unsigned seed, const tests::TempFolder& folder) {
   Random random(seed);
   machine::Job job;
   job.path = folder / "job.toml";
-  job.program = folder.write("rows.nc", rows_program(between(random, 0.4, 1.1), between(random, 0.25, 0.4),
-                                                     between(random, 500, 1400)));
+  job.program = folder.write(
+      "rows.nc", rows_program(between(random, 0.4, 1.1), between(random, 0.25, 0.4), between(random, 500, 1400)));
   for (auto& axis : job.machine.axis) {
     axis.acceleration_mm_per_s2 = between(random, 500, 3000);
     axis.max_velocity_mm_per_s = 100;
@@ -76,9 +76,10 @@ void expect_kept_promises(unsigned seed) {
     area += before.area_mm2;
     if (more_um > 1) worse_area += before.area_mm2;
   }
-  fmt::print("seed {}: p95 {:.2f} to {:.2f} um, worse by {:.2f} um, {:.3f} % of the area by more than 1 um; round {} "
-             "of {}\n",
-             seed, c.before_um.p95, c.after_um.p95, worse_um, 100 * worse_area / area, c.best, c.rounds.size() - 1);
+  fmt::print(
+      "seed {}: p95 {:.2f} to {:.2f} um, worse by {:.2f} um, {:.3f} % of the area by more than 1 um; round {} "
+      "of {}\n",
+      seed, c.before_um.p95, c.after_um.p95, worse_um, 100 * worse_area / area, c.best, c.rounds.size() - 1);
 }
 
 TEST_P(RandomJobs, AreNeverWorseThanGivenNorBeyondTheirLimits) { expect_kept_promises(GetParam()); }
