@@ -56,7 +56,7 @@ machine::Job random_job(unsigned seed, const tests::TempFolder& folder) {
   return job;
 }
 
-class RandomJobs : public testing::TestWithParam<unsigned> {};
+class RandomJobs : public ::testing::TestWithParam<unsigned> {};
 
 void expect_kept_promises(unsigned seed) {
   const tests::TempFolder folder;
@@ -84,8 +84,8 @@ void expect_kept_promises(unsigned seed) {
 
 TEST_P(RandomJobs, AreNeverWorseThanGivenNorBeyondTheirLimits) { expect_kept_promises(GetParam()); }
 
-INSTANTIATE_TEST_SUITE_P(Quick, RandomJobs, testing::Range(0u, 10u));
-INSTANTIATE_TEST_SUITE_P(Slow, RandomJobs, testing::Range(10u, 100u));
+INSTANTIATE_TEST_SUITE_P(Quick, RandomJobs, ::testing::Range(0u, 10u));
+INSTANTIATE_TEST_SUITE_P(Slow, RandomJobs, ::testing::Range(10u, 100u));
 
 }  // namespace
 }  // namespace camber::compensate
