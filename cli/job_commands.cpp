@@ -187,6 +187,7 @@ void add_compensate(CLI::App& app, const GlobalOptions& options, Action& chosen)
   command->add_option("--levers", arguments->levers, "what may change, instead of the job's: shift,feed,passes")
       ->delimiter(',')
       ->expected(1)
+      ->take_all()
       ->type_name("LIST");
   command->add_flag("--keep-anyway", arguments->keep_anyway,
                     "write the program even if it is no better than the given one");

@@ -156,7 +156,7 @@ TEST(FitDrive, TakesTracesThatBeginOnTheWay) {
 /// tried, which might explain the third one by chance.
 TEST(FitDrive, NeverFitsWhatIsHeldOut) {
   const ServoTrace own = followed({.gain = 30}), other = followed({.gain = 60});
-  constexpr std::size_t kSamples = 1800;
+  constexpr std::size_t kSamples = 700;  // up to the first rest
   std::vector<ServoTrace> traces;
   for (const ServoTrace* whole : {&own, &own, &other}) {
     ServoTrace t = *whole;

@@ -229,7 +229,7 @@ TEST(Siemens, ModesOfTheControl) {
 
 TEST(Siemens, ToleranceOfThePathByCtol) {
   const Read r = read_siemens(
-      "G64\nG1 X0 Y0 Z0 F100\nCYCLE832(0.01,_FINISH,1)\nX1\nCTOL=0.02\nX2\nCTOL=-1\nX3\n"
+      "G64\nG0 X0 Y0 Z0\nCYCLE832(0.01,_FINISH,1)\nG1 X1 F100\nCTOL=0.02\nX2\nCTOL=-1\nX3\n"
       "CYCLE832(0.05,2,1) \nX4\nCYCLE832()\nX5\nCOMPCAD CTOL=0.03\nX6\n");
   EXPECT_EQ(r.messages, Messages{});
   const auto state = [&](std::size_t i) { return r.moves.state_of(r.moves.moves[i]); };
