@@ -14,7 +14,7 @@ namespace camber::tests {
 inline void record_figure(const std::string& what, double off_percent, double allowed_percent) {
   const char* path = std::getenv("CAMBER_FIGURES");
   if (path == nullptr) return;
-  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  const ::testing::TestInfo* test = ::testing::UnitTest::GetInstance()->current_test_info();
   std::FILE* file = std::fopen(path, "a");
   ASSERT_NE(file, nullptr) << path;
   char line[512];
