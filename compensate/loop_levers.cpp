@@ -80,6 +80,7 @@ bool Loop::feeds_pay(double percent) {
   const std::vector<Observation> all = best_->observed.of_path();
   const std::vector<double> left_mm = left_by_shift_mm(path, all, fit_options());
   std::vector<double> area_mm2;
+  area_mm2.reserve(all.size());
   for (const Observation& o : all) area_mm2.push_back(o.area_mm2);
   const double budget_s = percent / 100 * given_s_;
   const double expected_mm = now_->feeds->choose(path, all, left_mm, budget_s, kWanted * tolerance_mm()).error_mm;
