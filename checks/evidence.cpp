@@ -149,13 +149,10 @@ Evidence::Evidence(const machine::Job& of_job)
 }
 
 Severity Evidence::error_of(int tool, std::initializer_list<std::string_view> keys, bool of_stock) const {
-  const auto is_assumed = [&](const std::string& table, std::string_view key) {
-    const auto found = assumed.find(table);
-    return found != assumed.end() && std::ranges::find(found->second, key) != found->second.end();
-  };
   const std::string table = fmt::format("tool.{}", tool);
-  const bool doubtful = (of_stock && is_assumed("stock", "box_mm")) ||
-                        std::ranges::any_of(keys, [&](std::string_view key) { return is_assumed(table, key); });
+  const bool doubtful =
+      (of_stock && machine::is_assumed(assumed, "stock", "box_mm")) ||
+      std::ranges::any_of(keys, [&](std::string_view key) { return machine::is_assumed(assumed, table, key); });
   return doubtful ? Severity::warning : Severity::error;
 }
 

@@ -1,5 +1,6 @@
 #include "machine/assumptions.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <optional>
@@ -64,6 +65,12 @@ std::map<std::string, std::vector<std::string>> assumed_in(const TomlNode& root)
 std::map<std::string, std::vector<std::string>> assumed_keys(const std::string& job_path) {
   const auto file = file_of(job_path);
   return file ? assumed_in(file->root) : std::map<std::string, std::vector<std::string>>{};
+}
+
+bool is_assumed(const std::map<std::string, std::vector<std::string>>& keys, const std::string& table,
+                std::string_view key) {
+  const auto found = keys.find(table);
+  return found != keys.end() && std::ranges::find(found->second, key) != found->second.end();
 }
 
 std::vector<std::string> assumptions(const Machine& machine) {

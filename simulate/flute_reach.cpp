@@ -93,7 +93,8 @@ class Report {
     const bool flutes = tool.flute_length_mm && *tool.flute_length_mm < tool.overhang_mm;
     const char* key = flutes ? "flute_length_mm" : "overhang_mm";
     const char* name = flutes ? "cut-above-flutes" : "cut-above-overhang";
-    const bool length = is_assumed(fmt::format("tool.{}", number), key), blank = is_assumed("stock", "box_mm");
+    const bool length = machine::is_assumed(assumed_, fmt::format("tool.{}", number), key),
+               blank = machine::is_assumed(assumed_, "stock", "box_mm");
     if (length || blank) {
       warned_.insert(number);
       diagnostics_.add(program_.text.source.diagnostic(
@@ -115,11 +116,6 @@ class Report {
   }
 
  private:
-  bool is_assumed(const std::string& table, const char* key) const {
-    const auto found = assumed_.find(table);
-    return found != assumed_.end() && std::ranges::find(found->second, key) != found->second.end();
-  }
-
   const machine::Job& job_;
   const SimulatedProgram& program_;
   Diagnostics& diagnostics_;

@@ -19,8 +19,7 @@ TEST(Sample25, RunsAsItStandsAndIsOnePartOnBothControls) {
     EXPECT_EQ(run.status, 0) << job;
     EXPECT_EQ(run.err, "") << job;
     checked[job] = nlohmann::json::parse(tests::file_text(folder / job));
-    EXPECT_EQ(checked[job]["assumed"][0],
-              std::string("machine preset:") + machine + ", typical values of its class");
+    EXPECT_EQ(checked[job]["assumed"][0], std::string("machine preset:") + machine + ", typical values of its class");
   }
   const auto &tnc = checked["dome_tnc"], &sinumerik = checked["dome_840d"];
   for (const char* kind : {"rapid", "linear", "arc"}) EXPECT_EQ(tnc["moves"][kind], sinumerik["moves"][kind]) << kind;
