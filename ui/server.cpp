@@ -183,7 +183,12 @@ class Server {
       fail_on_file(fmt::format("{}:{}", address, port),
                    "cannot be listened on; another --port or --address was expected", "address");
     guard_.cookie_name = fmt::format("camber_{}", port);
-    thread_ = std::thread([this] { http_.listen_after_bind(); });
+    thread_ = std::thread([this] {
+      http_.listen_after_bind();
+      ended_ = true;
+    });
+    // httplib's stop() does nothing before its loop runs: a signal that comes sooner would be waited for in vain.
+    while (!http_.is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     return fmt::format("http://{}:{}/?token={}", host_text(address), port, guard_.token);
   }
 
@@ -349,6 +354,7 @@ class Server {
   Bench bench_;
   httplib::Server http_;
   std::thread thread_;
+  std::atomic<bool> ended_ = false;  ///< the loop of http_
 };
 
 /// Waits for a signal that ends the process; other threads do not get them.

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include <arpa/inet.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,11 +65,13 @@ class Workbench {
   int port() const { return port_; }
   std::string cookie() const { return "camber_" + std::to_string(port_) + "=" + token_; }
 
-  /// Ends it and returns the rest of its standard output.
+  /// Ends it and returns the rest of its standard output; kills it where it has not ended after 30 s.
   std::string end(int signal, int* status = nullptr) {
     kill(pid_, signal);
     std::string rest;
     char buffer[4096];
+    pollfd end_of_file{out_, POLLIN, 0};
+    if (poll(&end_of_file, 1, 30'000) == 0) kill(pid_, SIGKILL);
     for (ssize_t n; (n = read(out_, buffer, sizeof buffer)) > 0;) rest.append(buffer, static_cast<std::size_t>(n));
     int result = 0;
     waitpid(pid_, &result, 0);
