@@ -39,7 +39,7 @@ std::string_view to_string(OverReason reason);
 
 /// A load of a block beyond its limit by more than kOverLimit.
 struct OverLimit {
-  std::size_t line = 0, new_line = 0;  ///< of the given and of the emitted program, the worst place
+  std::size_t line = 0, new_line = 0;  ///< line of the given and of the emitted program, the worst place
   LoadLimit limit;
   double value = 0, feed_mm_per_s = 0;  ///< the greatest load there, and the actual feed at it
   OverReason reason = OverReason::lowest_feed;
@@ -50,18 +50,18 @@ constexpr double kUnderLimit = 0.95;
 
 /// Time for other limits, by the model of the loads.
 struct SweepRow {
-  double factor = 1;  ///< of the limits
+  double factor = 1;  ///< factor on the limits
   double time_s = 0;
-  std::size_t blocks = 0;             ///< of the program
+  std::size_t blocks = 0;             ///< number of blocks of the program
   double constant_feed_mm_per_s = 0;  ///< the greatest single feed that keeps the limits; 0: none from the lowest on
   double constant_time_s = 0;         ///< with it
 };
 
 /// Values along the path, one per cell.
 struct PathTrace {
-  std::vector<double> along_mm;                                     ///< of the cell's end, over all cutting moves
-  std::vector<std::size_t> line;                                    ///< of the given program
-  std::vector<double> feed_before_mm_per_s, feed_after_mm_per_s;    ///< commanded
+  std::vector<double> along_mm;                                   ///< path length at the cell's end, all cutting moves
+  std::vector<std::size_t> line;                                  ///< line of the given program
+  std::vector<double> feed_before_mm_per_s, feed_after_mm_per_s;  ///< commanded
   std::vector<double> speed_before_mm_per_s, speed_after_mm_per_s;  ///< actual, greatest
   std::vector<std::vector<double>> load_before, load_after;         ///< one row per limit but chip_min
 };
@@ -77,11 +77,11 @@ struct AdaptResult {
   double limit_factor = 1;      ///< by which time_limit_s scaled the limits
   double time_before_s = 0, time_after_s = 0;
   double cutting_time_before_s = 0, cutting_time_after_s = 0;
-  double milling_time_before_s = 0, milling_time_after_s = 0;  ///< of the job's operations alone
+  double milling_time_before_s = 0, milling_time_after_s = 0;  ///< machine time of the job's operations alone
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double constant_feed_mm_per_s = 0, constant_time_s = 0;  ///< see SweepRow, for the limits
   double constant_milling_time_s = 0;
-  int predictions = 0;          ///< of the emitted program
+  int predictions = 0;          ///< number of predictions of the emitted program
   std::vector<SweepRow> sweep;  ///< ascending factor
   PathTrace trace;
 };

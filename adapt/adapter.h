@@ -22,7 +22,7 @@ class Adapter {
   AdaptResult run();
 
  private:
-  static constexpr double kAim = 0.97;  ///< of a limit: between kUnderLimit and kOverLimit
+  static constexpr double kAim = 0.97;  ///< aimed-at fraction of a limit: between kUnderLimit and kOverLimit
 
   const simulate::SimulatedProgram& given() const { return setup_ ? setup_->program : *program_; }
   const removal::Stock& blank() const { return setup_ ? setup_->target.blank : blank_->stock; }

@@ -23,10 +23,10 @@ struct Cell {
   std::uint32_t move = 0;
   double from = 0, to = 1;  ///< fractions of the move's length
   double length_mm = 0;
-  double along_mm = 0;       ///< of its end, from the start of its chain
+  double along_mm = 0;       ///< path length at its end, from the start of its chain
   double feed_mm_per_s = 0;  ///< programmed
   Kept kept = Kept::no;
-  bool first = false;  ///< of a chain: after a rapid or a dwell
+  bool first = false;  ///< first of a chain: after a rapid or a dwell
 };
 
 /// Cells of all lines and arcs with a feed, in the order of the path. Between two chains lies a rapid or a dwell.

@@ -63,7 +63,7 @@ class FeedChooser {
   const simulate::SimulatedProgram& given_;
   const FeedCells& cells_;
   FeedBounds bounds_;
-  std::vector<double> radius_mm_;  ///< of the tool, by cell
+  std::vector<double> radius_mm_;  ///< radius of the tool, by cell
   std::vector<double> top_speed_;
 };
 

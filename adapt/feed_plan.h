@@ -11,7 +11,7 @@ struct FeedBounds {
   double lowest_mm_per_s = 0, highest_mm_per_s = 0;
   double step_fraction = 0.05;  ///< neighbouring feeds differ by more than this
   double change_s = 0.03;       ///< time that a change of feed must save
-  double min_length_mm = 0.2;   ///< of a block that a split makes
+  double min_length_mm = 0.2;   ///< least length of a block that a split makes
 };
 
 /// By cell.

@@ -20,7 +20,7 @@ inline constexpr std::size_t index_of(Load load) {
 
 /// How a load is shown.
 struct LoadText {
-  std::string_view key;   ///< of [adapt] limits and of the JSON: "force_N"
+  std::string_view key;   ///< key of [adapt] limits and of the JSON: "force_N"
   std::string_view name;  ///< "lateral force"
   std::string_view unit;  ///< "N"
   double scale = 1;       ///< shown = scale * inside

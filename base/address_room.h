@@ -26,7 +26,7 @@ class AddressRoom {
 
   void* data_ = nullptr;
   std::size_t bytes_ = 0;
-  std::size_t open_end_ = 0;  ///< of the pages opened last
+  std::size_t open_end_ = 0;  ///< end of the pages opened last
 };
 
 }  // namespace camber

@@ -10,7 +10,7 @@ namespace camber {
 void confine_files(const std::string& folder);
 
 /// Throws InputError [file-outside] where confine_files() was called and `path`, all links resolved, lies outside.
-/// What is not there yet counts by the folder that it would be in.
+/// A file that does not exist yet counts by the folder that it would be in.
 void require_confined(const std::string& path);
 
 /// Whether `path`, all links resolved, is `folder` or lies below it.

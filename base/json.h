@@ -60,7 +60,7 @@ class Json {
   bool empty() const { return size() == 0; }  ///< no elements or members
   std::size_t size() const;
 
-  /// As text: in one line, or indented by that many blanks a level. Bytes that are not UTF-8 become U+FFFD.
+  /// The value as text: in one line, or indented by `indent` blanks a level. Bytes that are not UTF-8 become U+FFFD.
   std::string dump(int indent = -1) const;
 
  private:

@@ -6,9 +6,9 @@
 
 namespace camber {
 
-/// Of the triangles of a STEP file's faces from the faces themselves.
+/// Largest distance of the triangles of a STEP file's faces from the faces themselves.
 inline constexpr double kStepChord_mm = 0.005;
-/// Between the normals of neighbouring triangles on a curved face of a STEP file.
+/// Largest angle between the normals of neighbouring triangles on a curved face of a STEP file.
 inline constexpr double kStepTurn_deg = 20;
 
 /// True for the names *.step and *.stp, in capitals or not.

@@ -34,7 +34,7 @@ class OutputFile {
   std::string part_path_;  ///< as place_ where that is no regular file
   std::ofstream stream_;
   bool committed_ = false;
-  int descriptor_ = -1;  ///< of the part
+  int descriptor_ = -1;  ///< descriptor of the unfinished file
   int slot_ = -1;        ///< among the parts that a signal removes
 };
 

@@ -9,7 +9,8 @@
 
 namespace camber {
 
-/// What goes on, and the share of it that is done, 0 to 1. Called by the thread that opened the StageScope.
+/// Receives the stage that runs and the fraction of it that is done, 0 to 1. Called by the thread that opened the
+/// StageScope.
 using StageSink = std::function<void(const std::string& what, double share)>;
 
 /// During its lifetime the stages that this thread begins are shown to `sink`. A scope inside another one takes its

@@ -28,10 +28,10 @@ class WindowBuffer : public std::streambuf {
 
   std::ostream& out_;
   bool seekable_;
-  std::string kept_;  ///< of the file, from `begin_` on
+  std::string kept_;  ///< bytes of the file from `begin_` on
   std::streamoff begin_ = 0;
   std::size_t at_ = 0;      ///< in `kept_`: where the next byte goes
-  std::streamoff end_ = 0;  ///< of all that was written
+  std::streamoff end_ = 0;  ///< end of all that was written
 };
 
 }  // namespace camber

@@ -36,16 +36,16 @@ class Spread {
 /// One tool's work in the program.
 struct ToolWork {
   int number = 0;
-  const machine::Tool* tool = nullptr;          ///< of the job
-  const machine::ToolProposal* said = nullptr;  ///< of the program's comments; null: they do not name it
+  const machine::Tool* tool = nullptr;          ///< tool of the job
+  const machine::ToolProposal* said = nullptr;  ///< tool in the program's comments; null: not named
   bool mills = false;
   std::uint32_t first_move = 0;  ///< that cuts
   double milling_mm = 0;         ///< length of its milling moves
-  double level_mm = 0;           ///< of this, at one height
-  double sloping_mm = 0;         ///< of this, in lines that rise or fall by 2 to 80 degrees
-  double rising_mm = 0;          ///< of sloping_mm, upwards
+  double level_mm = 0;           ///< length of this at one height
+  double sloping_mm = 0;         ///< length of this in lines that rise or fall by 2 to 80 degrees
+  double rising_mm = 0;          ///< rising part of sloping_mm
   std::size_t holes = 0;         ///< moves that make holes
-  Spread feed_per_tooth_mm, cutting_speed_m_per_min, spindle_rpm, feed_mm_per_min;  ///< of milling, by length
+  Spread feed_per_tooth_mm, cutting_speed_m_per_min, spindle_rpm, feed_mm_per_min;  ///< in milling, by length
   simulate::MoveCut cut;  ///< sum of its milling moves, where there is a survey
   std::uint32_t deepest_move = 0;
   Spread depth_mm;  ///< height of what each move removes, by length in material
@@ -64,7 +64,7 @@ struct Evidence {
   std::map<std::string, std::vector<std::string>> assumed;  ///< keys by table (machine/assumptions.h)
 
   Evidence(const machine::Job& job, const simulate::SimulatedProgram& program);
-  /// Of a job whose program is yet to be made: all of its tools.
+  /// Evidence of a job whose program is yet to be made: all of its tools.
   explicit Evidence(const machine::Job& job);
   Evidence(const Evidence&) = delete;
   Evidence& operator=(const Evidence&) = delete;

@@ -18,7 +18,7 @@ struct CutterSpheres {
     double radius_mm;
   };
   std::vector<Sphere> spheres;
-  Vec3 middle_mm = Vec3::Zero();  ///< of a ball around all of them
+  Vec3 middle_mm = Vec3::Zero();  ///< centre of a ball around all of them
   double reach_mm = 0;
 };
 
@@ -39,7 +39,7 @@ struct PartFit {
   double gouging = 0;              ///< fraction of the places that cut into the part by more than kGouge_mm
   double cutting_in = 0;           ///< by more than kCutIn_mm
   double nearest_mm = 0;           ///< clearance that a hundredth of the places stays below
-  std::optional<Vec3> shift_mm{};  ///< of the part, with which path and part fit; where they do not fit without
+  std::optional<Vec3> shift_mm{};  ///< shift of the part with which path and part fit; where they do not fit without
 };
 
 /// A path may cut into the mesh by as much: chords, stock to leave below zero, rounding.

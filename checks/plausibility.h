@@ -29,7 +29,7 @@ void check_plausibility(const machine::Job& job, const simulate::SimulatedProgra
 /// The same of a job whose program is yet to be made (copy, resegment --part): its tools, material, stock and part.
 void check_job_values(const machine::Job& job, Diagnostics& diagnostics);
 
-/// What every command asks of a job's program before its work: whether the machine can run it
+/// The checks that every command makes of a job's program before its work: whether the machine can run it
 /// (simulate/machine_checks.h), and whether the job is plausible.
 void check_program(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics);
 

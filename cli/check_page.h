@@ -13,7 +13,7 @@
 
 namespace camber::cli {
 
-/// What the page draws: the path, or, where rotary axes turn, the machine along the program.
+/// The picture of the page: the path, or, where rotary axes turn, the machine along the program.
 struct CheckPicture {
   report::PathPicture path;
   std::optional<machine::Machine> machine{};

@@ -12,7 +12,7 @@ class App;
 
 namespace camber::cli {
 
-/// What a subcommand does once the command line is read; returns the exit status.
+/// Runs a subcommand once the command line is read; returns the exit status.
 using Action = std::function<int()>;
 
 /// Adds the subcommands. The one that is given sets `chosen`.

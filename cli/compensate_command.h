@@ -23,7 +23,7 @@ struct CompensateArguments {
   bool keep_anyway = false;           ///< write the program even where it is no better than the given one
 };
 
-/// What the computation takes of the arguments.
+/// The request of the computation, from the arguments of the command line.
 api::CompensateRequest compensate_request(const CompensateArguments& arguments);
 
 /// Throws InputError. Returns kDone or kNumbersDidNotWorkOut (a static solution did not settle, or the residual is

@@ -15,7 +15,7 @@ struct CompressArguments {
   std::string report;   ///< the page; empty: none
   double tolerance_mm = 0;
   double tangent_deg = 1;  ///< most that arcs may kink against what is beside them; 180: not bounded
-  /// Of a control that runs arcs faster than lines: the least time instead of the fewest blocks.
+  /// Feeds of a control that runs arcs faster than lines: the least time is sought instead of the fewest blocks.
   std::optional<double> line_feed_mm_per_min, arc_feed_mm_per_min;
   double block_s = 0.005;
   bool lines_only = false;

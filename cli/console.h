@@ -24,17 +24,17 @@ void print_event(const Json& event);
 /// A terminal, and no NO_COLOR in the environment (https://no-color.org).
 bool colour_wanted();
 
-/// As to_string; where `colour` with the place in bold, the word error in red or warning in magenta, and a green caret.
+/// The text of to_string; with `colour` the place is bold, "error" red, "warning" magenta and the caret green.
 std::string diagnostic_text(const Diagnostic& diagnostic, bool colour);
 
 /// Prints all of them to stderr; with -q only the errors.
 void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOptions& options);
 
-/// What a command does with what its readers found: prints warnings; throws InputError when there are errors, or
+/// Settles the messages of a command's readers: prints warnings; throws InputError when there are errors, or
 /// (--strict) warnings, which are errors then.
 void settle(const Diagnostics& diagnostics, const GlobalOptions& options);
 
-/// What [source] of a machine file was read as, on stderr; nothing with -q.
+/// Prints how [source] of a machine file was read, on stderr; nothing with -q.
 void print_translation(std::span<const std::string> translation, const GlobalOptions& options);
 
 /// One line "camber: error: ..." on stderr.

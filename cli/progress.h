@@ -42,7 +42,7 @@ class ProgressLine {
   void draw(Clock::time_point now);
 
   bool enabled_ = false;
-  std::mutex mutex_;  ///< of all below
+  std::mutex mutex_;  ///< guards all below
   std::condition_variable wake_;
   bool stop_ = false, quiet_ = false, shown_ = false, whole_ = false;
   std::string what_;

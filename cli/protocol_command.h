@@ -10,7 +10,7 @@ struct ProtocolArguments {
   std::string machine;
   std::string folder;
   bool part = false;       ///< a test piece for fit-parts instead
-  double diameter_mm = 6;  ///< of its end mill
+  double diameter_mm = 6;  ///< diameter of the test piece's end mill
 };
 
 /// Writes the programs, a .parts.csv beside each, and prints the purpose of each; of a test piece its program, job and

@@ -15,7 +15,7 @@ struct RasterArguments {
   std::optional<int> tool;  ///< not given: the job's only one
   double tolerance_mm = 0, scallop_mm = 0;
   double feed_mm_per_min = 0, spindle_rpm = 0;
-  double direction_deg = 0;            ///< of the rows, from +X
+  double direction_deg = 0;            ///< direction of the rows, from +X
   std::vector<double> boundary_mm;     ///< X0 Y0 X1 Y1; empty: the part's own
   std::optional<double> clearance_mm;  ///< Z; not given: 5 mm above stock and part
   double length_mm = 0;                ///< 0: the fastest is looked for

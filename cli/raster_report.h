@@ -9,7 +9,8 @@
 
 namespace camber::cli {
 
-/// What was laid, what it is set against, and what became of it. "Before" is the raster of constant steps.
+/// Data of the raster's report: the part, the raster, its comparison and its result. "Before" is the raster of
+/// constant steps.
 struct RasterResult {
   const TriangleMesh& part;
   const repath::Raster& raster;

@@ -15,7 +15,7 @@ class RoundsProgress {
 
   struct Whole {
     std::string what;  ///< "round 2 of about 3 (8 at most)"
-    double share = 0;  ///< of all that is expected
+    double share = 0;  ///< fraction of all that is expected, 0 to 1
   };
   /// A step as compensate() names it ("as given", "round 2"), and the share of it that is done.
   Whole at(std::string_view what, double share);

@@ -18,7 +18,7 @@ struct SectionsArguments {
   std::size_t sections = 1;
   std::size_t section = 0;  ///< from 1; 0: all of them, and the merge
   bool solve = false;       ///< stage of a single section; else sweep
-  int round = 1;            ///< of solving
+  int round = 1;            ///< number of the solving round, from 1
 };
 
 int run_sections(const SectionsArguments& arguments, const GlobalOptions& options);

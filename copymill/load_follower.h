@@ -28,9 +28,9 @@ struct LoadFigures {
   double target_N = 0;                  ///< 0: none, feed and depths stay as they are
   double max_N = 0;
   std::size_t passings = 0;          ///< passings that cut
-  std::size_t counted = 0;           ///< of them, at a freely chosen feed: not the lowest, the highest or a corner's
-  std::size_t within = 0;            ///< of the counted ones, with 80 to 105 % of the target
-  std::size_t over = 0;              ///< of all that cut, with more than 120 %
+  std::size_t counted = 0;           ///< those at a free feed: not the lowest, the highest or a corner's
+  std::size_t within = 0;            ///< number of the counted ones with 80 to 105 % of the target
+  std::size_t over = 0;              ///< number of all that cut with more than 120 %
   std::vector<OverTarget> places{};  ///< in order of time
 };
 

@@ -10,7 +10,7 @@ namespace camber::deflection {
 /// sine of the profile's normal angle. phi counter-clockwise from x in the tool's frame (tool_frame.h). With them the
 /// mean directional matrix of any engagement is known (dynamics/cut.h).
 struct ChipArc {
-  float area_mm_rad = 0;  ///< of one arc its depth times its angle
+  float area_mm_rad = 0;  ///< area of the arc: for a single one its depth times its angle
   float cosine_mm_rad = 0, sine_mm_rad = 0;
   float wall_mm_rad = 0;  ///< as much as the first on an upright wall, less on a floor
 

@@ -18,7 +18,7 @@ namespace camber::deflection {
 /// Symmetric, without negative eigenvalues.
 struct PartCompliance {
   struct Place {
-    std::size_t stamp = 0;  ///< of the run
+    std::size_t stamp = 0;  ///< number of the stamp in the run
     Eigen::MatrixXd mm_per_N;
   };
   std::vector<double> height_mm;  ///< above the tip, ascending, evenly spaced, two or more, the first 0
@@ -30,10 +30,10 @@ struct PartCompliance {
   Eigen::MatrixXd at(std::size_t stamp) const;
 };
 
-/// What PartCompliance gathers and reads at a height above the tip.
+/// Interpolation weights of the nodes below and above a height over the tip.
 struct HeightWeight {
   std::size_t lower = 0;
-  double upper_fraction = 0;  ///< of lower + 1
+  double upper_fraction = 0;  ///< weight of node lower + 1, 0 to 1
   double of_lower() const { return 1 - upper_fraction; }
 };
 HeightWeight height_weight(const PartCompliance& part, double height_mm);

@@ -26,7 +26,7 @@ class StaticEquilibrium {
     double rms_um = 0;   ///< rms of the change at the tip over the rotation steps in the cut
     double size_um = 0;  ///< the same for the deflection
     bool solved = true;
-    int steps = 0;  ///< of Newton's method
+    int steps = 0;  ///< steps of Newton's method
   };
   struct Motion {
     removal::ToothMotion of_tool;
@@ -51,7 +51,7 @@ class StaticEquilibrium {
     double depth_mm, cap_mm;  ///< as read
     double thickness_mm;      ///< the lesser of them, or a tooth's that is not even
     double by_step,
-        by_height;   ///< of the lean: by deflections of the steps before and after, by deflections of the nodes
+        by_height;   ///< derivatives of the tilt by the deflections of the neighbouring steps and of the nodes
     double lean_mm;  ///< as read
     double width_mm;
     double solved_mm;  ///< thickness with the deflection as it is
@@ -65,9 +65,9 @@ class StaticEquilibrium {
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
   void balance(std::size_t m);
-  /// What one element adds to the balance of the axial deflection, and to what that changes.
+  /// Contribution of one element to the balance of the axial deflection, and to the derivatives of that balance.
   struct AxialChange {
-    double own, side;  ///< of the thickness, by the axial deflections of this step and of those beside it
+    double own, side;  ///< derivatives of the thickness by the axial deflections of this step and of its neighbours
   };
   void balance_axial(std::size_t m, double force_z, double slope_z, const std::array<double, 4>& by_own,
                      const std::array<double, 4>& by_side, const AxialChange& by_axial);
@@ -89,12 +89,12 @@ class StaticEquilibrium {
   std::size_t steps_, nodes_;
   std::vector<Ring> rings_;
   std::vector<EdgeElement> found_;
-  std::vector<std::size_t> place_;  ///< of those found, in elements_
+  std::vector<std::size_t> place_;  ///< indices of the elements found, in elements_
   std::vector<Element> elements_;   ///< rotation step by rotation step
-  std::vector<std::size_t> first_;  ///< of a rotation step's elements
+  std::vector<std::size_t> first_;  ///< first element of each rotation step
   double max_lean_mm_ = 0;
   bool first_stamp_ = false;
-  std::span<const Vec2> run_out_;  ///< of the rotation steps; empty: none
+  std::span<const Vec2> run_out_;  ///< run-out at the rotation steps, mm; empty: none
   bool axial_;                     ///< the tool, or the part, yields along the axis
   // The part, where it yields: compliance of this passing; of rings and nodes their share of its heights; by rotation
   // step what its heights take, [steps][size], how that changes with the coarse deflections and the axial one of its

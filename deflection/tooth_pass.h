@@ -56,10 +56,10 @@ class ToothPassModel {
 
   /// The tool, or the part under it, yields along the axis.
   bool axial() const { return axial_compliance_mm_per_N_ > 0 || part_ != nullptr; }
-  /// Of this run; null: the part does not yield.
+  /// Compliance of the workpiece in this run; null: it is rigid.
   const PartCompliance* part() const { return part_; }
-  /// Of the whole tool, machine and all, along its axis to an axial force at the tip. A force higher up stretches less
-  /// of the bar; of a hundred newtons that is hundredths of a micrometre.
+  /// Axial compliance of the whole tool, machine included, to an axial force at the tip. A force higher up stretches
+  /// less of the bar; for a hundred newtons the difference is hundredths of a micrometre.
   double axial_compliance_mm_per_N() const { return axial_compliance_mm_per_N_; }
   int steps() const { return envelope_.steps_per_pitch; }
   const std::vector<double>& node_height_mm() const { return node_height_mm_; }
@@ -76,11 +76,11 @@ class ToothPassModel {
   void edge_elements(std::span<const removal::DeflectedChipSample> chips, std::size_t passing,
                      const removal::ToothMotion& motion, std::vector<EdgeElement>& out) const;
   EdgeDirections direction(std::uint32_t point, const removal::EnvelopeGrid::Ring& ring) const;
-  /// Of a point of the envelope, from the tip.
+  /// Position of a point of the envelope, from the tip, in the tool frame.
   Vec3 place_mm(std::uint32_t point) const;
   const machine::Material& material() const { return material_; }
   double edge_ramp_mm() const { return edge_ramp_mm_; }
-  /// Of the node's x and y to a force at a ring, mm/N.
+  /// Compliance of the node's x and y to a force at a ring, mm/N.
   Vec2 compliance_mm_per_N(std::size_t ring, std::size_t node) const {
     return axis_compliance_.array() + compliance_[ring * node_height_mm_.size() + node];
   }
@@ -118,14 +118,14 @@ class ToothPassModel {
   const removal::EnvelopeGrid& envelope_;
   machine::Material material_;
   double edge_ramp_mm_;
-  Vec2 axis_compliance_;  ///< of the machine's x and y axes, mm/N, the same at every height
+  Vec2 axis_compliance_;  ///< compliance of the machine's x and y axes, mm/N, the same at every height
   double axial_compliance_mm_per_N_;
   Teeth teeth_;
   std::vector<int> tooth_step_;  ///< rotation steps from tooth 0 to each tooth
   std::vector<double> node_height_mm_;
   std::vector<double> compliance_;  ///< [rings][nodes], mm/N
   const PartCompliance* part_;
-  std::vector<HeightWeight> part_weight_;  ///< of each ring
+  std::vector<HeightWeight> part_weight_;  ///< height weights of each ring
 };
 
 /// Heights for a cutter that is engaged up to `top_mm`: evenly spaced, where 12 nodes suffice at most 2 mm or a tenth

@@ -15,7 +15,7 @@ struct BeamSection {
   double youngs_modulus_MPa = 0, density_kg_per_m3 = 0, poisson = 0.3;
 };
 
-/// What holds the end of the last section. Infinite: it does not yield.
+/// Support of the end of the last section. Infinite: it does not yield.
 struct BeamRoot {
   double stiffness_N_per_mm = std::numeric_limits<double>::infinity();
   double tilt_stiffness_Nmm_per_rad = std::numeric_limits<double>::infinity();

@@ -6,7 +6,7 @@
 
 namespace camber::dynamics {
 
-/// What was measured per force. In terms of s = 2 pi i f, a receptance times 1, s and s^2.
+/// The measured quantity per force. With s = 2 pi i f it is a receptance times 1, s or s^2.
 enum class ResponseKind { receptance, mobility, accelerance };
 
 struct FrequencyResponse {

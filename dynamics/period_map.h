@@ -36,7 +36,7 @@ class PeriodMap {
   /// Teeth with the same delay.
   struct Delay {
     double knots = 0;                   ///< length in intervals
-    std::vector<Eigen::Matrix2d> chip;  ///< of each interval, N/mm
+    std::vector<Eigen::Matrix2d> chip;  ///< chip matrix of each interval, N/mm
   };
 
   ModeStep step_of(const Mode& mode) const;
@@ -48,7 +48,7 @@ class PeriodMap {
   Cut cut_;
   double speed_rpm_;
   bool equal_;
-  std::vector<DirectionalIntegral> integrals_;  ///< of the slices
+  std::vector<DirectionalIntegral> integrals_;  ///< directional integrals of the slices
   double period_s_, dt_s_;
   int intervals_, history_;  ///< history_: knots before the period
   std::vector<ModeStep> steps_;
@@ -56,7 +56,7 @@ class PeriodMap {
   std::vector<Delay> delays_;
   std::vector<Interval> interval_;
   std::vector<std::array<int, 2>> kept_;  ///< knot and component of the past that the state has
-  std::vector<Vec2> place_;               ///< of the knots: history_, then the period
+  std::vector<Vec2> place_;               ///< positions at the knots: history_, then the period
 };
 
 }  // namespace camber::dynamics

@@ -19,9 +19,9 @@
 namespace camber::dynamics {
 
 struct SemiOptions {
-  double points_per_period = 60;  ///< of the highest mode; depths are right to about 0.2 %
+  double points_per_period = 60;  ///< time steps per period of the highest mode; depths are right to about 0.2 %
   int min_intervals = 0;          ///< a lower bound for the period, for checks of convergence
-  double scan_step = 0.19;        ///< of the lowest zero-order depth: islands thinner than this can be missed
+  double scan_step = 0.19;        ///< step as a fraction of the lowest zero-order depth: thinner islands can be missed
   double deepest = 20;            ///< times the lowest zero-order depth: where the search ends
 };
 

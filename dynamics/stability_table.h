@@ -11,19 +11,20 @@ namespace camber::dynamics {
 /// An engagement of a single arc.
 struct ArcCut {
   double arc_rad = 0;     ///< angle
-  double centre_rad = 0;  ///< of the arc, as angles of dynamics/cut.h
+  double centre_rad = 0;  ///< centre of the arc, as angles of dynamics/cut.h
   double kt_MPa = 0, kr_MPa = 0;
 };
 
 /// Standard errors of modes, relative.
 struct ModeErrors {
-  double frequency = 0, damping = 0, stiffness = 0;  ///< of their logarithms
+  double frequency = 0, damping = 0, stiffness = 0;  ///< standard deviations of their logarithms
 };
 /// Process damping (Cut::process_damping_N_per_mm) that nobody knows: a length times kt, and the error of its
 /// logarithm. 200 N/mm in a steel of 2000 MPa; 611 were identified in AISI 1045 (Altintas, Eynian, Onozuka 2008).
 constexpr double kProcessDamping_mm = 0.1, kProcessDampingError = 0.8;
 
-/// Of measured modes a tap test on another day, of a beam with a usual damping what holders and spindles differ by.
+/// Standard deviations of the logarithms of modes. Measured modes: repeatability of a tap test on another day; modes
+/// of a beam with a usual damping: the spread of holders and spindles.
 constexpr ModeErrors kMeasuredModeErrors{.frequency = 0.01, .damping = 0.15, .stiffness = 0.1};
 constexpr ModeErrors kBeamModeErrors{.frequency = 0.1, .damping = 0.6, .stiffness = 0.25};
 
@@ -40,7 +41,8 @@ class StabilityTable {
 
   /// The exact one, of the same method.
   CriticalDepth exactly_at(const ArcCut& cut) const;
-  /// Of other speeds: semi-discretised where the cut is short or the teeth unequal, else of zero order.
+  /// Critical depths at other speeds: by semi-discretisation where the cut is short or the teeth unequal, else of
+  /// zero order.
   std::vector<CriticalDepth> at_speeds(const ArcCut& cut, const std::vector<double>& speeds_rpm) const;
 
   /// The probability that a depth is unstable: the fraction of kDraws draws of the modes within their errors, of zero

@@ -18,17 +18,17 @@ struct FeatureResult {
   double nominal_mm = 0;
   std::optional<double> predicted_mm{};      ///< size of the machined feature
   std::string reason{};                      ///< why there is no prediction
-  std::optional<double> commanded_mm{};      ///< of the programmed surface
+  std::optional<double> commanded_mm{};      ///< size on the programmed surface
   double contour_um = 0, deflection_um = 0;  ///< what they change the size by; predicted - commanded is their sum
   std::optional<double> std_mm{};            ///< standard error of the prediction
   std::optional<double> form_um{};           ///< roundness, cylindricity, flatness, or spread of the local sizes
   std::optional<double> taper_um{};          ///< size at the upper end of the depth minus that at the lower
   std::optional<double> roundness_um{}, straightness_um{};  ///< bore, boss: of the roundest-off circle; of the axis
-  std::optional<Vec3> position_um{};                        ///< of the middle, after alignment
+  std::optional<Vec3> position_um{};                        ///< position of the middle against nominal, after alignment
   std::optional<double> measured_mm{};                      ///< mean of the measured values
   std::optional<double> lower_mm{}, upper_mm{};
   std::size_t readings = 0, missed = 0;
-  std::vector<double> deviations_um{};  ///< of the readings from the nominal shape, for a picture
+  std::vector<double> deviations_um{};  ///< deviations of the readings from the nominal shape, for a picture
 
   std::optional<double> difference_um() const {
     if (!predicted_mm || !measured_mm) return std::nullopt;

@@ -23,7 +23,7 @@ struct Evaluation {
   std::span<const removal::SurfacePoint> surface;
   double voxel_mm;
   FeatureResult& out;
-  std::array<Vec3, 3> middle_mm{};  ///< of the feature as programmed, with contour error, and machined (Layer)
+  std::array<Vec3, 3> middle_mm{};  ///< middle of the feature as programmed, with contour error, and machined (Layer)
   std::vector<Vec3> constrained{};  ///< unit directions along which its place is known
   bool placed = false;
 
@@ -54,8 +54,9 @@ void evaluate_plane(Evaluation& e);
 void evaluate_slot(Evaluation& e);
 void evaluate_wall(Evaluation& e);
 void evaluate_points(Evaluation& e);
-void evaluate_point_distance(Evaluation& e);  ///< of two surfaces that face along the line through two points
-/// Of the middles of two other features, along the line between their nominal places and across their axes.
+void evaluate_point_distance(Evaluation& e);  ///< between surfaces that face along the line through two points
+/// Evaluates the distance of the middles of two features, along the line between their nominal places and across
+/// their axes.
 void evaluate_distance_of(Evaluation& e, const Evaluation& a, const Evaluation& b);
 
 }  // namespace camber::inspect

@@ -28,7 +28,7 @@ struct CircleFit {
 };
 
 struct CylinderFit {
-  Vec3 point_mm = Vec3::Zero();  ///< of the axis, nearest to the centroid
+  Vec3 point_mm = Vec3::Zero();  ///< point of the axis nearest to the centroid
   Vec3 axis = Vec3::UnitZ();     ///< unit
   double radius_mm = 0;
   double zone_mm = 0;  ///< cylindricity

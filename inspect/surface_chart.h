@@ -10,7 +10,7 @@ namespace camber::inspect {
 /// A point of the surface beside a feature's nominal shape.
 struct ChartPoint {
   double u_mm = 0, v_mm = 0;  ///< along the nominal shape
-  double nominal_mm = 0;      ///< of the programmed surface above the shape, along the chart's outward direction
+  double nominal_mm = 0;      ///< height of the programmed surface above the shape, along the chart's outward direction
   double contour_mm = 0, deflection_mm = 0;  ///< what lag and corners, and bending, add to it
   double area_mm2 = 0;
   bool valid = true;  ///< the model holds here

@@ -65,8 +65,8 @@ class Chain {
   /// Inverse kinematics. pose.axis: unit. `near`: decides windings, and angles that are free.
   /// Round trip with pose(): 1e-9 mm for coordinates up to metres, 1e-9 in the axis (chain_test).
   Branches branches(const ToolPose& pose, double tool_length_mm, const Joints& near) const;
-  /// Of the branches and their windings within travel the one with the least sum of turns from `near`. Where none is
-  /// within travel: the nearest, with the axis that leaves its travel.
+  /// Joints of a pose: of both branches and their windings within travel, the solution with the least sum of turns
+  /// from `near`. Where none is within travel: the nearest, with the axis that leaves its travel.
   Solution solve(const ToolPose& pose, double tool_length_mm, const Joints& near) const;
 
   /// The same for a direction alone: the travel of x, y, z does not count.

@@ -25,7 +25,7 @@ struct Explanation {
 /// Requires machine.kinematics.given().
 Explanation explain(const machine::Machine& machine);
 
-/// As printed: drawing, sentences, limits. UTF-8.
+/// The explanation as printed: drawing, sentences, limits. UTF-8.
 std::string to_text(const Explanation& explanation, const std::string& machine_path);
 
 }  // namespace camber::kinematics

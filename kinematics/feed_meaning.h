@@ -34,7 +34,7 @@ inline constexpr std::array kFeedMeaningTexts{
     FeedMeaningText{"inverse", "1/min of the block (G93)"},
 };
 
-/// Of a feed move. `turn_rad`: what the rotary axes turn in it.
+/// Meaning of F in a feed move. `turn_rad`: turns of the rotary axes in it.
 FeedMeaning feed_meaning(const nc::Interpretation& program, const nc::Move& move, const Vec3& turn_rad,
                          const machine::Control& control);
 

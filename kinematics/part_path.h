@@ -32,8 +32,8 @@ class PartPath {
   double length_mm(std::uint32_t move) const { return at_[move].length_mm; }
   /// Sum of what the rotary axes turn by, rad.
   double turn_rad(std::uint32_t move) const { return at_[move].turn_rad; }
-  /// Of a move that turns: the fraction, of no bounds, at which X, Y, Z and the angles are nearest to those of the
-  /// joints, an angle of 1 rad counted as kLever_mm.
+  /// For a move that turns: the unbounded fraction of the move at which X, Y, Z and the angles are nearest to those
+  /// of the joints, an angle of 1 rad counted as kLever_mm.
   double nearest_fraction(std::uint32_t move, const Joints& joints) const;
   /// How far the rotary axes are from where they are at this fraction of the move, 1 rad counted as kLever_mm.
   double angle_distance_mm(std::uint32_t move, double u, const Joints& joints) const;

@@ -23,8 +23,8 @@ struct PoseTrackOptions {
   double max_step_rad = 2 * kPi / 180;  ///< between samples, for each rotary axis
   double max_step_mm = 10;              ///< between samples, for each linear axis; arcs have at least 24 samples a turn
   std::size_t max_steps_per_move = 2000;
-  double rapid_mm_per_s = 200;  ///< of linear axes without max_velocity_mm_per_min
-  double rapid_rad_per_s = 1;   ///< of rotary axes without max_velocity_deg_per_min
+  double rapid_mm_per_s = 200;  ///< rapid speed of linear axes without max_velocity_mm_per_min
+  double rapid_rad_per_s = 1;   ///< rapid speed of rotary axes without max_velocity_deg_per_min
 };
 
 struct PoseTrack {

@@ -28,13 +28,13 @@ struct MoveJoints {
   double g93_time_s = 0;  ///< duration that G93 asks for; 0: not G93, or no rotary words
   /// x, y, z can be had (at()): work offset, tool length and reference points are known as far as they matter.
   bool linear_known = false;
-  Reach reach = Reach::reached;  ///< of the end; direction: the axes stay where they were
+  Reach reach = Reach::reached;  ///< reach of the end; direction: the axes stay where they were
   /// False where the start is not known, as at the first move of a program: at(u) holds for u = 1 alone.
   bool start_known = true;
   bool turns() const { return start_rad != end_rad; }
 };
 
-/// What a work offset or a tool length is where it is not known.
+/// Value of a work offset or a tool length that is not known.
 enum class MissingOffset : std::uint8_t { unknown, zero };
 
 class ProgramJoints {
@@ -98,9 +98,9 @@ class ProgramJoints {
   MissingOffset missing_;
   std::size_t next_ = 0, next_target_ = 0, next_machine_target_ = 0;
   MoveJoints now_;
-  bool follows_path_ = false;                                           ///< of the tip; else the joints go straight
-  bool in_frame_ = false;                                               ///< the end of the move is a programmed point
-  Vec3 start_tip_mm_ = Vec3::Zero(), end_tip_mm_ = Vec3::Zero();        ///< of the move, in its frame
+  bool follows_path_ = false;                                     ///< the tip follows its path; else joints go straight
+  bool in_frame_ = false;                                         ///< the end of the move is a programmed point
+  Vec3 start_tip_mm_ = Vec3::Zero(), end_tip_mm_ = Vec3::Zero();  ///< ends of the move, in its frame
   Vec3 start_linear_mm_ = Vec3::Zero(), end_linear_mm_ = Vec3::Zero();  ///< NaN: not known
   Vec3 last_linear_mm_;                                                 ///< where the last move left the axes
 };

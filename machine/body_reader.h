@@ -10,7 +10,7 @@ namespace camber::machine {
 /// After [kinematics].
 void read_bodies(TomlTable& top, Machine& machine);
 
-/// As machine.toml text that begins with an empty line.
+/// The body as machine.toml text that begins with an empty line.
 std::string body_text(const Body& body);
 
 }  // namespace camber::machine

@@ -10,7 +10,7 @@
 namespace camber::machine {
 
 struct CycleCase {
-  std::string name;     ///< of its table: [case.NAME]
+  std::string name;     ///< name of its table: [case.NAME]
   std::string title;    ///< what it stands for; empty: none
   std::string program;  ///< empty: the program of the command line
   Machine machine;      ///< with `set` done

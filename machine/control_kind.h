@@ -9,19 +9,19 @@
 
 namespace camber::machine {
 
-/// What F is per minute of in a block that moves linear and rotary axes without tool-centre-point control.
+/// Quantity that F counts per minute in a block that moves linear and rotary axes without tool-centre-point control.
 enum class RotaryFeed {
-  linear,  ///< of the length in X Y Z, whatever the rotary axes do
-  joints   ///< of sqrt(dx^2 + dy^2 + dz^2 + da^2 + db^2 + dc^2), mm and degrees
+  linear,  ///< the length in X Y Z, whatever the rotary axes do
+  joints   ///< sqrt(dx^2 + dy^2 + dz^2 + da^2 + db^2 + dc^2), mm and degrees
 };
 
-/// What machine.toml does not say about a control. The defaults are for a control about which nothing is known.
+/// Properties of a control that machine.toml does not give. The defaults are for an unknown control.
 struct ControlKind {
   std::string_view name;        ///< the word of [control] dialect and --dialect
   std::string_view nc_dialect;  ///< dialect of its programs: nc::Dialect::name
 
   // Motion
-  RapidPath rapid_path = RapidPath::dogleg;  ///< of G0, where [cycle] rapid_path is not given
+  RapidPath rapid_path = RapidPath::dogleg;  ///< path of G0 where [cycle] rapid_path is not given
   /// Without Q, the P of G64 (corner tolerance) is also the tolerance within which short lines are merged.
   bool g64_p_merges = false;
   /// Stops between rapid and feed moves, whatever the corner law. (Control::rapid_change_s: stops and waits.)

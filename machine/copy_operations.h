@@ -28,7 +28,7 @@ enum class HoleCycle {
   ream     ///< in and out at the feed
 };
 
-/// What is done where a pass would have the cutter's full width in the cut.
+/// Method for a pass that would have the cutter's full width in the cut.
 enum class Slotting {
   by_load,     ///< trochoids where a full cut at the lowest feed and depth would be over CopyOperation::force_N
   full_width,  ///< a full cut
@@ -54,7 +54,7 @@ struct CopyOperation {
   double axial_depth_mm = 0;   ///< between levels; drilling: of a peck; not used by finishing with a scallop
   double allowance_mm = 0;     ///< left on the part, along its normal
   double scallop_mm = 0;       ///< > 0: finishing rows on the part's surface with scallops of this height
-  double angle_rad = 0;        ///< of rows, from +X
+  double angle_rad = 0;        ///< direction of rows, from +X
   MillingSense sense = MillingSense::climb;
   double ramp_rad = 3 * kPi / 180;  ///< steepest way into material
   bool plunge = false;              ///< the cutter may go straight down into material

@@ -30,7 +30,7 @@ CutterParameters parameters_of(const Tool& tool);
 /// Ends of the corner's arc: on the bottom (M) and on the wall (N), as (r, z); one point where there is no arc.
 struct CornerEnds {
   Vec2 bottom = Vec2::Zero(), wall = Vec2::Zero();
-  double bottom_normal_rad = 0, wall_normal_rad = 0;  ///< of the arc's outward normal from -z towards +r
+  double bottom_normal_rad = 0, wall_normal_rad = 0;  ///< angles of the arc's outward normal from -z towards +r
 };
 
 /// Returns a sentence on what is wrong with a profile; empty if it is valid: bottom, corner and wall meet and every

@@ -30,7 +30,7 @@ struct MeasuredValue {
   std::string date;  ///< as written, ISO 8601; empty: not told
   double value_mm = 0;
   std::optional<double> nominal_mm{}, lower_mm{}, upper_mm{};  ///< limits are absolute
-  std::string kind{}, status{};                                ///< of a QIF file: "Diameter", "PASS"
+  std::string kind{}, status{};                                ///< words of a QIF file: "Diameter", "PASS"
 };
 
 /// A feature of the part. Places are in the frame of the program.
@@ -54,7 +54,7 @@ struct Feature {
   std::optional<double> depth_mm;                ///< below axis_mm[0], where it was measured; not given: all along
   std::optional<std::array<double, 2>> arc_rad;  ///< bore, boss: part of the circle, counter-clockwise from +X
   double extent_mm = 0;  ///< plane, wall, distance: radius about the axis that is probed; 0: all of the face
-  int points = 0;        ///< of the instrument; 0: every point of the predicted surface
+  int points = 0;        ///< number of points that the instrument takes; 0: every point of the predicted surface
   FeatureFilter filter = FeatureFilter::least_squares;
   std::optional<int> tool;  ///< that made the feature; not given: any
   bool align = false;       ///< the part is aligned by this feature before positions are judged
@@ -69,7 +69,7 @@ struct Feature {
 struct ModelError {
   double deflection = 0;  ///< relative, of forces times compliance
   double contour = 0;     ///< relative, of servo lag and corners
-  double size_mm = 0;     ///< of the diameter of a tool in its holder
+  double size_mm = 0;     ///< standard error of the diameter of a tool in its holder
 };
 std::optional<ModelError> read_model_error(TomlTable& top);
 

@@ -14,7 +14,7 @@ struct ForceLawDescription {
   std::string_view word, title;
   std::vector<Coefficient> coefficients;  ///< its own, then the edge terms, as they are written
   std::vector<Coefficient> fitted;        ///< those that fit-force fits: tangential, radial, axial
-  std::vector<std::string_view> keys;     ///< of [material], that belong to this law alone
+  std::vector<std::string_view> keys;     ///< keys of [material] that belong to this law alone
   std::vector<std::string_view> shown_by;
   std::vector<std::string_view> header_keys;
   /// Reads the law's coefficients but for the edge terms; a preset, or null, has filled them in.
@@ -26,7 +26,7 @@ struct ForceLawDescription {
 /// In the order of ForceLaws.
 std::span<const ForceLawDescription> force_laws();
 const ForceLawDescription& description(ForceLaw law);
-/// Of any law. Null: no such key.
+/// Coefficient of any law by its key. Null: no such key.
 const Coefficient* find_coefficient(std::string_view key);
 
 /// Calls f with the law's type, as a value without data. A few comparisons; f is inlined.

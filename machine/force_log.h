@@ -25,7 +25,7 @@ struct LoggedCut {
 enum class LogContents { means, samples };
 
 struct ForceLog {
-  std::string path;  ///< of the job
+  std::string path;  ///< path of the job
   LogContents contents = LogContents::samples;
   bool waveform = false;  ///< fit the waveform, not only its means; samples only
   bool up_milling = true;
@@ -41,7 +41,7 @@ struct ForceLog {
   bool feed_is_per_tooth = false;
   int header_line = 1;                        ///< 1-based line of the names of the columns
   std::vector<std::array<double, 2>> idle_s;  ///< the tool turns in air: what shows is drift
-  std::vector<LoggedCut> cuts;                ///< of a log of samples
+  std::vector<LoggedCut> cuts;                ///< cuts of a log of samples
 };
 
 /// Reads [tool.N], [material] (may be missing) and [force_log] of a job; program, machine and stock are not needed.

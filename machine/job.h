@@ -53,7 +53,7 @@ struct Tool {
   double root_stiffness_N_per_mm = kNoLimit;                ///< lateral, holder and spindle
   double root_axial_stiffness_N_per_mm = kNoLimit;          ///< along the axis, holder and spindle
   double root_rotational_stiffness_Nmm_per_rad = kNoLimit;  ///< about the axes across the tool, at the holder face
-  std::optional<double> axial_stiffness_N_per_mm{};  ///< of the tool itself along its axis; empty: from its geometry
+  std::optional<double> axial_stiffness_N_per_mm{};  ///< stiffness of the tool along its axis; empty: by its geometry
   std::vector<std::string> typical{};         ///< keys that nobody gave, with the typical values that stand for them
   std::optional<double> density_kg_per_m3{};  ///< not given: by the modulus (dynamics/beam_modes.h)
   std::vector<Mode> modes{};                  ///< measured at the tip; empty: those of its beam
@@ -76,8 +76,8 @@ struct Workpiece {
   bool fixed_bottom = true;                      ///< held at the lowest level of the stock
   std::vector<Box> fixed_boxes;                  ///< held inside
   std::string fixed_mesh;                        ///< STL: held inside; empty: none
-  double fixture_stiffness_N_per_mm = kNoLimit;  ///< of all that holds it, in every direction
-  double cell_mm = 0;                            ///< of its elastic model; 0: chosen (simulate/part_survey.h)
+  double fixture_stiffness_N_per_mm = kNoLimit;  ///< stiffness of all that holds it, in every direction
+  double cell_mm = 0;                            ///< cells of its elastic model; 0: chosen (simulate/part_survey.h)
   Diagnostic place;  ///< an error without a message where `fixed` stands, or else [workpiece]
 };
 
@@ -101,7 +101,7 @@ struct Operations {
 struct Part {
   std::string mesh;                      ///< STL; empty: none
   std::string program;                   ///< NC program that is the target; empty: the job's own
-  std::optional<Operations> operations;  ///< of the target program; not given: the job's operations
+  std::optional<Operations> operations;  ///< operations of the target program; not given: the job's operations
   std::optional<Operations> judged;      ///< moves of the target program whose surface is judged; not given: all
 };
 
@@ -124,7 +124,7 @@ enum class Reference {
   machine     ///< deflection_um: servo lag and corner rounding are not corrected
 };
 
-/// What a compensation may change about a program.
+/// Part of a program that a compensation may change.
 enum class Lever : std::uint8_t {
   shift,  ///< points of the path
   feed,   ///< F words, where the error that no shift takes away exceeds the tolerance
@@ -159,14 +159,14 @@ struct CompensationSettings {
   /// Extra machine time for feed and passes: the least error within it. Not given: as much as the tolerance takes, up
   /// to 10 % where the job does not name its levers, else to 200 %.
   std::optional<double> time_budget_percent;
-  double min_feed_percent = 20;                 ///< of the programmed feed; below it edges rub
+  double min_feed_percent = 20;                 ///< least feed, percent of the programmed one; below it edges rub
   double pass_allowance_mm = 0;                 ///< what the first of two passes leaves; 0: chosen
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
   Operations operations;                        ///< simulated moves to compensate; none given: the finishing moves
   std::optional<Vec3> work_offset_mm;           ///< program zero in machine coordinates, for the travel limits
 };
 
-/// What camber adapt keeps the loads within. Not given: no limit.
+/// Limits within which camber adapt keeps the loads. Not given: no limit.
 struct AdaptLimits {
   std::optional<double> force_N{};        ///< greatest lateral force of a tooth passing
   std::optional<double> torque_Nmm{};     ///< greatest torque of the spindle
@@ -202,7 +202,7 @@ struct Job {
   std::optional<AdaptSettings> adapt{};
   std::vector<Feature> features{};  ///< that predict and compensate evaluate
   std::optional<ModelError> model_error{};
-  std::vector<Mode> workpiece_modes{};   ///< of the work on its table; empty: it is rigid
+  std::vector<Mode> workpiece_modes{};   ///< modes of the work on its table; empty: it is rigid
   std::optional<Workpiece> workpiece{};  ///< not given: rigid
 };
 

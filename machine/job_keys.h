@@ -78,7 +78,7 @@ inline constexpr std::array kProfileKeys{
     ProfileKey{{"corner_centre_z_mm", &Tool::corner_centre_z_mm, kAnyNumber}, "general", ""},
 };
 
-/// Of [[tool.N.mode]] and [[workpiece.mode]]; all must be given.
+/// Keys of [[tool.N.mode]] and [[workpiece.mode]]; all must be given.
 inline constexpr std::array kModeKeys{
     NumberKey<Mode>{"frequency_Hz", &Mode::frequency_hz, kPositive},
     NumberKey<Mode>{"damping_percent", &Mode::damping_ratio, kDampingPercent, kAsPercent},
@@ -109,7 +109,7 @@ inline constexpr std::array kWorkpieceKeys{
     NumberKey<Workpiece>{"cell_mm", &Workpiece::cell_mm, kNotNegative},
 };
 
-/// Of [adapt] limits.
+/// Key of a limit in [adapt] limits.
 struct LimitKey {
   std::string_view key;
   std::optional<double> AdaptLimits::*field;

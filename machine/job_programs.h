@@ -14,8 +14,8 @@ struct JobOfPrograms {
   std::vector<std::string> programs;
 };
 
-/// As read_job. Also [program-list], and [several-programs] for what belongs to one program alone (lines of operations,
-/// a target program).
+/// Reads a job as read_job does, with one or several programs. Also [program-list], and [several-programs] for keys
+/// that belong to one program alone (lines of operations, a target program).
 JobOfPrograms read_job_of_programs(const std::string& path, Diagnostics& diagnostics);
 
 }  // namespace camber::machine

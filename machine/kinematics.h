@@ -10,13 +10,13 @@
 
 namespace camber::machine {
 
-/// What turns by the right-hand rule about `direction` when the axis' word grows: the tool relative to the part
+/// Body that turns by the right-hand rule about `direction` when the axis' word grows: the tool relative to the part
 /// (ISO 841), or the part relative to the tool.
 enum class PositiveTurn { tool, table };
 
 struct RotaryAxis {
   bool given = false;
-  Vec3 direction = Vec3::UnitZ();  ///< of the axis with all axes at 0, machine frame; any length but zero
+  Vec3 direction = Vec3::UnitZ();  ///< direction of the axis with all axes at 0, machine frame; any length but zero
   Vec3 point_mm = Vec3::Zero();    ///< any point of the axis with all axes at 0, machine frame
   PositiveTurn positive = PositiveTurn::tool;
   /// The control takes absolute words modulo one turn, and turns by at most half a turn.
@@ -30,8 +30,8 @@ struct RotaryAxis {
   double filter_s = 0;                                                   ///< moving average; 0: none
   double exponential_1_s = 0, exponential_2_s = 0;                       ///< first-order lags; 0: none
   double position_gain_per_s = std::numeric_limits<double>::infinity();  ///< Kp of the position loop
-  double velocity_lag_s = 0;                                             ///< of the velocity loop
-  double feed_forward_percent = 0;                                       ///< of the position loop
+  double velocity_lag_s = 0;                                             ///< lag of the velocity loop
+  double feed_forward_percent = 0;                                       ///< feed forward of the position loop
   double acceleration_feed_forward_s = 0, dead_time_s = 0;               ///< as of machine::Axis
   double backlash_rad = 0;                                               ///< lost motion at each reversal
   /// Corner law speed_difference: value for this axis; infinite: the number of the corner law, in degrees.

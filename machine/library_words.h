@@ -15,13 +15,13 @@ std::string kind_of_fusion(std::string_view type);
 /// "tapered ball", "drill"; "chamfer", "vbit" and "engraving" are chamfer tools; "tap" and "reamer" stand as drills.
 void set_type_by_kind(ToolProposal& tool);
 
-/// What Fusion's JSON, its CSV and HSMWorks' XML tell of a cutter, in mm and degrees. Zero or less means that it does
-/// not apply.
+/// Sizes of a cutter in Fusion's JSON, its CSV and HSMWorks' XML, in mm and degrees. Zero or less: the size does not
+/// apply.
 struct FusionSizes {
   double diameter = 0, corner_radius = 0, flute_length = 0, body_length = 0, overall_length = 0, shank_diameter = 0;
   double shoulder_diameter = 0, shoulder_length = 0, tip_diameter = 0, flutes = 0;
   double taper_deg = 0;  ///< between the cone or wall and the axis
-  double point_deg = 0;  ///< of a drill, between the sides
+  double point_deg = 0;  ///< point angle of a drill, between the sides
 };
 
 /// Kind, type and sizes of a cutter from a library of these.

@@ -47,13 +47,13 @@ inline constexpr double kInPositionMm = 0.02;
 
 struct Control {
   ControlKind kind = default_control_kind();
-  double period_s = 0.001;  ///< of interpolation and of feed.csv
+  double period_s = 0.001;  ///< period of interpolation and of feed.csv
   double block_time_s = 0;  ///< block processing time T_b
   Corner corner;
   double merge_tolerance_mm = 0;  ///< short lines within it are merged; 0: none
   int lookahead_blocks = 0;  ///< lookahead: number of segments, at the last of which a stop is possible; 0: unlimited
-  double arc_normal_fraction = 1;      ///< of the acceleration, for centripetal acceleration: v <= sqrt(fraction a r)
-  double arc_tangential_fraction = 1;  ///< of the acceleration, available along an arc at that limit
+  double arc_normal_fraction = 1;      ///< fraction of the acceleration for arcs: v <= sqrt(fraction a r)
+  double arc_tangential_fraction = 1;  ///< fraction of the acceleration, available along an arc at that limit
   /// Fraction of the acceleration in a blended block (G64) that ends in a stop; applied twice when the lookahead plans
   /// the entry speed of that block.
   double stop_acceleration_fraction = 1;
@@ -62,7 +62,7 @@ struct Control {
   double path_acceleration_mm_per_s2 = kNoLimit;
   /// Minimum wait at the stop between rapid and feed moves; 0: no stop.
   double rapid_change_s = 0;
-  std::optional<double> least_increment_mm{};  ///< of coordinates in an emitted program; not given: as the program has
+  std::optional<double> least_increment_mm{};  ///< step of emitted coordinates; not given: as the program has
   bool kind_given = false;                     ///< [control] dialect; else the default kind
   /// Numbers without a decimal point count least increments, not millimetres or inches; not given: not known.
   std::optional<bool> whole_numbers_are_increments{};
@@ -73,7 +73,7 @@ struct Control {
   /// Limits of the axes count for the joints, under tool-centre-point control too. False: there for X, Y, Z of the
   /// program, A, B and C instead.
   bool joint_limits = true;
-  std::optional<AccelerationTimes> acceleration_law{};  ///< of a parameter set ([control.mode]); not given: [cycle]'s
+  std::optional<AccelerationTimes> acceleration_law{};  ///< for a parameter set ([control.mode]); not given: [cycle]'s
 };
 
 struct Axis {
@@ -91,7 +91,7 @@ struct Axis {
   double feed_forward_percent = 0;
   double acceleration_feed_forward_s = 0;  ///< commanded acceleration x this is added to the velocity command
   double dead_time_s = 0;                  ///< from the command to the position loop
-  double backlash_mm = 0;                  ///< of the load behind the position loop: lost motion at each reversal
+  double backlash_mm = 0;                  ///< lost motion at each reversal, behind the position loop
   /// Corner law speed_difference: value for this axis; infinite: that of the corner law.
   double speed_difference_mm_per_s = kNoLimit;
   double stiffness_N_per_mm = kNoLimit;  ///< static, tool against work, along this axis
@@ -111,7 +111,7 @@ struct FittedRange {
 struct Spindle {
   double max_rpm = kNoLimit;
   double gd2_kgf_m2 = 0;                  ///< flywheel effect of spindle, motor and tool; 0: starts immediately
-  double power_W = kNoLimit;              ///< of the motor
+  double power_W = kNoLimit;              ///< power of the motor
   double constant_torque_rpm = kNoLimit;  ///< N1: constant torque up to here
   double constant_power_rpm = kNoLimit;   ///< N2: constant power from N1 to here, falling above
   double start_time_s = 0;                ///< from rest to max_rpm, instead of gd2 and power; 0: not given
@@ -119,7 +119,7 @@ struct Spindle {
 };
 
 struct Machine {
-  std::string path;  ///< of the file it was read from
+  std::string path;  ///< path of the file it was read from
   Control control;
   /// Parameter sets that codes of the program select ([control.mode.NAME]): `control` with other values, by name.
   std::vector<std::pair<std::string, Control>> modes;
@@ -133,7 +133,7 @@ struct Machine {
   std::array<ReferencePoint, 3> reference_points;  ///< second to fourth
   IndexTable index;
   FittedRange fitted_range;
-  std::vector<std::string> translation;  ///< of [source]: a line for each native parameter
+  std::vector<std::string> translation;  ///< translation of [source]: a line for each native parameter
 };
 
 /// Throws InputError with file:line:column for unknown keys, wrong types and values out of range.

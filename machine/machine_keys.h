@@ -28,7 +28,7 @@ inline constexpr std::array<std::string_view, 11> kModeNames{
     "g05_1_q1", "g05_p10000", "g08_p1", "cycle832", "cycle32", "high_speed_contouring",
     "g61",      "g61_1",      "g62",    "g63",      "g64"};
 
-/// Of a parameter set, beside the keys of [control]: its own acceleration law.
+/// Keys of a parameter set beside those of [control]: its own acceleration law.
 inline constexpr std::array kModeLawKeys{
     NumberKey<AccelerationTimes>{"time_constant_1_ms", &AccelerationTimes::time_constant_1_s, kNotNegative,
                                  kMilliseconds},

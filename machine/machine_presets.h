@@ -27,7 +27,7 @@ bool is_preset(std::string_view machine_path);
 /// The preset that "preset:NAME" names; null: there is none of that name.
 const MachinePreset* find_machine_preset(std::string_view machine_path);
 
-/// What is wrong with an unknown "preset:NAME", and the names that were expected.
+/// Message about an unknown "preset:NAME", with the names that were expected.
 std::string unknown_machine_preset(std::string_view machine_path);
 
 /// A machine file to start from: the preset's text with a head that says what it is.

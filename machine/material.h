@@ -17,7 +17,7 @@ struct Material : CoefficientsOfAll<ForceLaws> {
   std::string_view preset = {};  ///< name of the preset that it began with; empty: none
 
   constexpr Material() = default;
-  /// Of the linear law.
+  /// Material with the linear law.
   constexpr Material(double ktc, double krc, double kac, double kte = 0, double kre = 0, double kae = 0) {
     ktc_MPa = ktc, krc_MPa = krc, kac_MPa = kac;
     kte_N_per_mm = kte, kre_N_per_mm = kre, kae_N_per_mm = kae;

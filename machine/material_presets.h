@@ -19,7 +19,7 @@ struct MaterialPreset {
   std::vector<CatalogueRow> catalogue{};  ///< the source's table, where it is one
   std::string_view names{};               ///< further names, separated by blanks: W.-Nr., EN, AISI, JIS, trade names
   double hardness_HB = 0;                 ///< as supplied; 0: not a metal
-  double scatter_percent = 30;            ///< of the force between sources and heats of the material
+  double scatter_percent = 30;            ///< scatter of the force between sources and heats of the material
 };
 
 /// In alphabetical order.
@@ -27,7 +27,7 @@ std::span<const MaterialPreset> material_presets();
 /// By its own name alone. Null: no such name.
 const MaterialPreset* find_preset(std::string_view name);
 
-/// What a name was taken for.
+/// Preset that a name was taken for.
 struct MaterialMatch {
   const MaterialPreset* preset = nullptr;  ///< null: nothing is known of the name
   std::string note;                        ///< what had to be assumed; empty: the name is in the library
@@ -40,7 +40,7 @@ struct MaterialMatch {
 /// so.
 MaterialMatch find_material(std::string_view name);
 
-/// What is wrong with a name of which nothing is known, the nearest known one, and what was expected.
+/// Message about an unknown name: the nearest known one, and what was expected.
 std::string unknown_material(std::string_view name);
 
 }  // namespace camber::machine

@@ -12,7 +12,7 @@ struct MeasuredColumns {
   std::string feature = "feature", part = "part", date = "date", value = "value_mm";
   std::string nominal = "nominal_mm", lower = "lower_mm", upper = "upper_mm";  ///< used where the header has them
   char separator = ',';
-  double mm_per_unit = 1;  ///< of value, nominal and limits
+  double mm_per_unit = 1;  ///< unit of value, nominal and limits
 };
 
 /// Rows of a CSV; lines that begin with # are comments. `feature` and `value` must be there; a row without a value is

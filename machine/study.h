@@ -29,7 +29,7 @@ struct Study {
   StudyCommand command = StudyCommand::predict;
   std::vector<std::string> figures;  ///< dotted paths of the command's JSON; empty: default ones
   std::vector<StudyKey> keys;        ///< in the order of the file
-  TomlNode base;                     ///< of the job's file
+  TomlNode base;                     ///< table of the job's file
 
   std::size_t cases() const;
 };

@@ -24,7 +24,7 @@ struct TomlNode {
   struct Entry;
   Kind kind = Kind::other;
   const SourceText* source = nullptr;
-  std::size_t offset = 0;       ///< of the value, bytes from the file's start
+  std::size_t offset = 0;       ///< offset of the value, bytes from the file's start
   std::string text;             ///< kind text
   double number = 0;            ///< kind number
   bool boolean = false;         ///< kind boolean
@@ -88,11 +88,11 @@ class TomlTable {
   std::optional<TomlTable> table(std::string_view key);
   /// List of tables, [[key]]; empty where it is missing or wrong.
   std::vector<TomlTable> tables(std::string_view key);
-  /// What stands at `key`; nothing where it is missing.
+  /// Kind of the value at `key`; nothing where it is missing.
   std::optional<TomlNode::Kind> kind_of(std::string_view key) const;
   /// Marks `key` as known without reading it.
   void ignore(std::string_view key) { known_.emplace(key); }
-  /// What stands in this table itself.
+  /// Entries of this table itself.
   const std::vector<TomlNode::Entry>& entries() const { return node_->entries; }
   /// Keys of this table; reading them marks them as known.
   std::vector<std::string> keys() const;

@@ -16,7 +16,7 @@ struct ToolProposal {
   std::optional<int> number;  ///< in the T word; libraries may list cutters without one
   std::string what;           ///< the source's own words; in a library the cutter's name
   std::string from;           ///< where they stand, "p.nc:3", "tool.tbl:7"
-  std::string kind;           ///< of a library: what it is, also where camber has no cutter for it (library_words.h)
+  std::string kind;           ///< kind in a library, also where camber has no cutter for it (library_words.h)
   std::optional<ToolType> type;
   std::optional<double> diameter_mm, corner_radius_mm, flute_length_mm, shank_diameter_mm, overhang_mm;
   std::optional<int> flutes;

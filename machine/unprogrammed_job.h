@@ -4,7 +4,7 @@
 
 namespace camber::machine {
 
-/// As read_job, but the program may be missing, in its folder and in the job.
+/// Reads a job as read_job does, but the program may be missing, in its folder and in the job.
 Job read_unprogrammed_job(const std::string& path, Diagnostics& diagnostics);
 
 }  // namespace camber::machine

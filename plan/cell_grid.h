@@ -18,9 +18,9 @@ enum class CellKind : unsigned char {
 
 struct Cell {
   double blank_mm3 = 0, part_mm3 = 0, fixture_mm3 = 0;
-  double free_form_mm2 = 0;        ///< of the part's faces in it
-  double overhang_mm2 = 0;         ///< of these, looking down
-  double blank_free_form_mm2 = 0;  ///< of the blank's faces in it
+  double free_form_mm2 = 0;        ///< area of the part's faces in it
+  double overhang_mm2 = 0;         ///< area of these that looks down
+  double blank_free_form_mm2 = 0;  ///< area of the blank's faces in it
   CellKind kind = CellKind::air;
   double removal_mm3() const { return blank_mm3 > part_mm3 ? blank_mm3 - part_mm3 : 0; }
 };

@@ -7,11 +7,11 @@
 
 namespace camber::plan {
 
-/// Of a straight cut at full depth and width (deflection/steady_cut.h): the most that the operation meets but for
+/// Loads of a straight cut at full depth and width (deflection/steady_cut.h): the largest of the operation but for
 /// entries and corners.
 struct CutLoads {
   double force_N = 0;        ///< lateral, greatest over a turn; drills: none
-  double deflection_mm = 0;  ///< of the tip under that force at half the depth of cut
+  double deflection_mm = 0;  ///< deflection of the tip under that force at half the depth of cut
   double form_error_mm = 0;  ///< across the wall, at half the depth of cut, under the greatest force that way
   double power_W = 0;        ///< mean
 };
@@ -28,10 +28,10 @@ CutLoads mill_loads(const machine::Tool& tool, const machine::Material& material
 /// Power from the edge forces at half the radius; h = f_z sin(point angle / 2).
 CutLoads drill_loads(const machine::Tool& tool, const machine::Material& material, const Conditions& c);
 
-/// What an operation asks besides the tool.
+/// Requirements of an operation beside its tool.
 struct Cut {
   bool fine = false;
-  double depth_mm = machine::kNoLimit;  ///< of the primitive: no deeper cut
+  double depth_mm = machine::kNoLimit;  ///< depth of the primitive: no deeper cut
   double width_mm = machine::kNoLimit;  ///< no wider one
 };
 

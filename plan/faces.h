@@ -9,14 +9,14 @@ namespace camber::plan {
 
 struct FaceOptions {
   double plane_tolerance_mm = 0.01;   ///< planes nearer to each other are one
-  double circle_tolerance_mm = 0.02;  ///< of the corners of a hole's facets
+  double circle_tolerance_mm = 0.02;  ///< tolerance of the corners of a hole's facets
   double min_face_mm2 = 0.2;          ///< smaller planes are not looked at
 };
 
 struct AxisPlane {
   double at_mm = 0, area_mm2 = 0;
   bool face = true;          ///< false: a bound of a face that is no plane along the axes
-  double length_mm = 1e300;  ///< of upright walls: how long the longest one is, seen from above
+  double length_mm = 1e300;  ///< length of upright walls: of the longest one, seen from above
 };
 
 /// An upright round hole.
@@ -26,7 +26,7 @@ struct Hole {
   double top_mm = 0;      ///< where it opens
   double bottom_mm = 0;   ///< lower end of the cylinder
   double tip_mm = 0;      ///< lowest point of the bottom: below bottom_mm where a drill's cone is left
-  double volume_mm3 = 0;  ///< of the facets, with the bottom's cone
+  double volume_mm3 = 0;  ///< volume within the facets, with the bottom's cone
 };
 
 /// An upright inner edge: the tool that finishes there has at most this radius.

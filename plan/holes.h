@@ -9,7 +9,7 @@ namespace camber::plan {
 
 struct FoundHoles {
   std::vector<Hole> holes;
-  std::vector<bool> of_hole;     ///< of each triangle: belongs to a hole
+  std::vector<bool> of_hole;     ///< whether each triangle belongs to a hole
   std::vector<Triangle> caps;    ///< what closes the solid where the holes' triangles are taken away
   std::vector<Vec3> new_points;  ///< middles of the caps, numbered after those of the solid
 };

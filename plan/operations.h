@@ -30,8 +30,8 @@ struct Operation {
   double from_mm = 0, to_mm = 0;  ///< heights of the tip: lowest and highest
   double volume_mm3 = 0;          ///< that it removes
   double nominal_time_s = 0;      ///< volume / removal rate
-  double time_s = 0;              ///< of its program, by the feed model, of a run with its first; 0: none was made
-  double surface_mm2 = 0;         ///< of the part that it finishes
+  double time_s = 0;              ///< time of its program, by the feed model, of a run with its first; 0: none was made
+  double surface_mm2 = 0;         ///< area of the part that it finishes
   std::vector<std::string> notes{};
 };
 
@@ -46,7 +46,7 @@ struct ProgramFigures {
   double time_s = 0;  ///< by the feed model, with tool changes and spindle
   double removed_mm3 = 0;
   double left_p95_um = 0, left_max_um = 0;  ///< on the part, where tools can touch it
-  double gouge_um = 0;                      ///< of the stock's surface below the part's
+  double gouge_um = 0;                      ///< depth of the stock's surface below the part's
 };
 
 /// One of the three plans.
@@ -59,7 +59,7 @@ struct PlannedDivision {
   int tool_changes = 0;
   double nominal_time_s = 0;              ///< equation (3)
   std::optional<ProgramFigures> program;  ///< not given: none was made
-  double form_error_p95_mm = 0;           ///< of the last operations at each surface, weighted by area
+  double form_error_p95_mm = 0;           ///< percentile over the last operations at each surface, weighted by area
   bool complete() const { return unmachined.empty(); }
 };
 

@@ -64,14 +64,14 @@ class Workpiece {
   bool is_removed(std::size_t primitive) const { return removed_[primitive]; }
   /// Top of what stands within a distance of the primitive's outline, or inside it; its own bottom where nothing does.
   double highest_near_mm(std::size_t primitive, double distance_mm) const;
-  /// Of the primitive, seen from above, what a tool of this radius does not get to: its middle may go anywhere inside
-  /// and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room.
+  /// Area of the primitive, seen from above, that a tool of this radius does not reach: its axis may be anywhere
+  /// inside and beyond open sides, as far as part and fixtures above the primitive's bottom leave it room.
   double unreached_mm2(std::size_t primitive, const OpenFaces& open, double radius_mm) const;
-  /// Of its box, where part or fixtures stand above its bottom.
+  /// Area of the primitive's box in which part or fixtures stand above its bottom.
   double stands_within_mm2(std::size_t primitive) const;
   /// True where that is no more than the inner corners between sides that are not open, and 0.5 % of the primitive.
   bool has_room(std::size_t primitive, const OpenFaces& open, double radius_mm) const;
-  /// Of the primitive's faces, what the part has there.
+  /// Area of the primitive's faces that are faces of the part.
   double wall_mm2(std::size_t primitive) const;
   double floor_mm2(std::size_t primitive) const;
 
@@ -91,7 +91,7 @@ class Workpiece {
   std::vector<bool> removed_;
 };
 
-/// What a round tool leaves in four sharp inner corners.
+/// Area that a round tool leaves in four sharp inner corners.
 double sharp_corners_mm2(double radius_mm);
 
 /// By (1) greater height of the top, (2) greater volume, (3) more open faces, (4) less distance from the middle of the

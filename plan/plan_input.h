@@ -26,10 +26,10 @@ struct PlanTool {
 };
 using PlanTools = std::map<int, PlanTool>;
 
-/// What conditions are reduced for. Not given: no limit.
+/// Limits for which conditions are reduced. Not given: no limit.
 struct PlanLimits {
   std::optional<double> force_N{};        ///< lateral, greatest over a turn
-  std::optional<double> deflection_mm{};  ///< of the tip
+  std::optional<double> deflection_mm{};  ///< deflection of the tip
   std::optional<double> form_error_mm{};  ///< deflection across the wall, at half the depth of cut
   std::optional<double> power_W{};        ///< besides the spindle's own
 };
@@ -44,7 +44,7 @@ struct PlanInput {
   std::string path, part_path, machine_path;
   machine::StockDescription blank;
   std::vector<std::string> fixture_paths;
-  double mm_per_unit = 1;  ///< of the meshes and of the blank's box
+  double mm_per_unit = 1;  ///< unit of the meshes and of the blank's box
   machine::Machine machine;
   machine::Material material;
   PlanTools tools;
@@ -53,7 +53,7 @@ struct PlanInput {
   bool fine = false;          ///< finishing operations after roughing
   bool fast = false;
   double allowance_mm = 0.3;  ///< that roughing leaves where finishing follows
-  double scallop_mm = 0.01;   ///< of free-form faces
+  double scallop_mm = 0.01;   ///< scallop height of free-form faces
   bool coolant = false;       ///< M8 and M9 in the programs
   bool compensate = false;    ///< finishing operations are moved against their predicted form error
   double tool_change_s = 0;

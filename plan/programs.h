@@ -13,8 +13,8 @@ namespace camber::plan {
 struct PlanProgram {
   std::string whole;               ///< all operations, with tool changes, spindle and coolant
   std::vector<std::string> each;   ///< one an operation; a run's is its first operation's, the others have none
-  std::vector<double> times_s;     ///< of each, by the feed model, with its rapids; 0 where there is none
-  std::vector<std::string> notes;  ///< of each; mostly empty
+  std::vector<double> times_s;     ///< time of each, by the feed model, with its rapids; 0 where there is none
+  std::vector<std::string> notes;  ///< note about each; mostly empty
   ProgramFigures figures;
 };
 

@@ -10,17 +10,17 @@ namespace camber::plan {
 
 struct RemovalInput {
   Solid blank{}, part{};
-  /// Of a part that comes with its holes filled.
+  /// Holes of a part that comes with its holes filled.
   std::vector<Hole> part_holes{};
   std::vector<Solid> fixtures{};
   FaceOptions faces{};
   /// Planes of a blank that comes as heights only.
   std::array<std::vector<AxisPlane>, 3> blank_planes{};
-  /// Of the cells: what is thinner does not count. At least the tolerance of the planes.
+  /// Smallest thickness of a cell, mm; thinner ones do not count. At least the tolerance of the planes.
   double tolerance_mm = 0.01;
   /// Diameter of the smallest mill; 0: there is none, and everything is divided.
   double narrowest_mm = 0;
-  /// Of earlier set-ups: whether a place is machined, and the planes of what is.
+  /// Whether earlier set-ups have machined a place, and the planes of what they have.
   std::function<bool(const Vec3&)> machined{};
   std::array<std::vector<AxisPlane>, 3> machined_planes{};
 };
@@ -33,7 +33,7 @@ struct RemovalVolume {
   std::vector<InnerCorner> corners;
   double blank_mm3 = 0, part_mm3 = 0;
   double cells_mm3 = 0, holes_mm3 = 0;  ///< to be removed
-  double outside_mm3 = 0;               ///< of the part, where there is no blank
+  double outside_mm3 = 0;               ///< volume of the part where there is no blank
   double free_form_mm2 = 0;
   Bounds blank_bounds;
   Solid stays;              ///< part with its holes filled, and fixtures

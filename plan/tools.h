@@ -13,7 +13,7 @@ namespace camber::plan {
 /// Share of its radius by which facets tell that of an inner corner wrongly.
 inline constexpr double kCornerShare = 0.03;
 
-/// What a primitive asks of its tool.
+/// Requirements of a primitive on its tool.
 struct ToolNeed {
   Feature feature = Feature::face;
   double width_mm = 0;                         ///< see Step

@@ -16,7 +16,7 @@ void add_copy(pybind11::module_& module);
 void add_plan(pybind11::module_& module);
 void add_five_axis(pybind11::module_& module);  ///< post, posture
 
-/// What a function is given, or what the file of that path holds.
+/// Converts an argument of a function: an object, or the path of a file that holds it.
 camber::Program program_of(const pybind11::handle& object);
 camber::Machine machine_of(const pybind11::handle& object);
 camber::Job job_of(const pybind11::handle& object);

@@ -15,7 +15,7 @@ std::string adapt_text(const adapt::AdaptResult& result, double compute_s);
 /// Why the program is not within its limits or its time; empty: it is.
 std::vector<std::string> adapt_failures(const adapt::AdaptResult& result);
 
-/// What the page is about.
+/// Files that the page names.
 struct AdaptFiles {
   std::string job, program, output;
 };

@@ -17,7 +17,7 @@ class TickPicture {
   static constexpr std::size_t kMost = 40000;
   std::vector<copymill::Tick> ticks_;  ///< every stride_-th
   std::size_t stride_ = 1, count_ = 0;
-  copymill::Tick greatest_;  ///< of those since the last one kept: the greatest load
+  copymill::Tick greatest_;  ///< tick of the greatest load since the last one kept
 };
 
 struct CopyFiles {

@@ -6,11 +6,11 @@
 
 namespace camber::report {
 
-/// What a cutter meets at one position.
+/// Material that a cutter meets at one position.
 struct MetMaterial {
   double depth_mm = 0;        ///< highest material above the cutter's lower end, which is round or a cone
   double above_tip_mm = 0;    ///< top of what it cuts, above the tip
-  double width_fraction = 0;  ///< of the way across the cutter: how much of it this step cuts
+  double width_fraction = 0;  ///< fraction of the way across the cutter that this step cuts
 };
 
 /// Sums over the way that tools cut, how much of it no tool can cut.

@@ -12,8 +12,8 @@
 namespace camber::report {
 
 struct CycleRow {
-  std::string name;            ///< of the case or point
-  std::vector<double> values;  ///< of the swept keys
+  std::string name;            ///< name of the case or point
+  std::vector<double> values;  ///< values of the swept keys
   feedmodel::CycleTime time;
 };
 
@@ -21,12 +21,13 @@ struct CyclePage {
   std::string title, subtitle;
   std::vector<std::string> keys;  ///< swept; empty: cases or a single run
   std::vector<CycleRow> rows;     ///< at least one; each with a value a key
-  PathPicture picture;            ///< of the first row's program on its machine; without points: none
+  PathPicture picture;            ///< picture of the first row's program on its machine; without points: none
   MachineCards machine;           ///< instead of it, where the program turns rotary axes of the machine
   std::vector<std::string> notes;
 };
 
-/// What e and k in the tables are; the limit is that of a program which stops after every block (Yan & Shirase 1997).
+/// Explanation of e and k in the tables; the limit is that of a program which stops after every block (Yan & Shirase
+/// 1997).
 inline constexpr const char* kRatiosSentence =
     "e = actual / commanded feed; k = F^2 / (a d), a the acceleration, d the mean block length. With a stop after "
     "every "

@@ -16,13 +16,13 @@ struct FormErrorPoint {
   Vec3 crossing_mm = Vec3::Zero();  ///< where a line of the voxels' grid crosses the surface; for meshes
   Vec3 normal = Vec3::UnitZ();
   double error_um = 0;    ///< machined minus nominal surface along the normal; positive: excess material
-  double contour_um = 0;  ///< of it, what servo lag and corner rounding do to the target program
+  double contour_um = 0;  ///< part of it due to servo lag and corner rounding of the target program
   double deflection_um() const { return error_um - contour_um; }
   bool part_yields() const { return part_um == part_um; }
   double tool_um() const { return part_yields() ? deflection_um() - part_um : deflection_um(); }
   double area_mm2 = 0;                                               ///< represented by the point
   double total_error_um = std::numeric_limits<double>::quiet_NaN();  ///< against the part's mesh; NaN: no mesh
-  double model_error_um = std::numeric_limits<double>::quiet_NaN();  ///< of a trace: the feed model's; NaN: no trace
+  double model_error_um = std::numeric_limits<double>::quiet_NaN();  ///< by the feed model; NaN: no trace
   std::uint32_t block = 0;  ///< 1-based line that generated the surface here; 0: unknown
   int tool = 0;             ///< whose stamp made it; 0: unknown
   bool valid = true;        ///< the model holds here

@@ -21,7 +21,7 @@ struct Figure {
   /// Where summary.json or compensate's --json has it, "form_error_um.rms"; {} stands for before or after where
   /// both are shown ("{}_um.rms"). Empty: nowhere.
   std::string key;
-  std::string key_after{};  ///< of the second value where {} does not do; empty: as `key` says
+  std::string key_after{};  ///< key of the second value where {} does not do; empty: as `key` says
 };
 
 /// Any table of text: a first row of names, then rows of as many cells. Shown in the order given.
@@ -53,14 +53,14 @@ struct ReportData {
   std::vector<Figure> figures;  ///< the first four are shown large
   SurfaceSamples surface;
   bool compared = false;                                ///< the surface's error_after_um and block_after count
-  std::array<std::string, 2> names{"before", "after"};  ///< of what is compared
-  double voxel_mm = 0.1;                                ///< of the grid that the surface's points lie on
+  std::array<std::string, 2> names{"before", "after"};  ///< names of the two programs that are compared
+  double voxel_mm = 0.1;                                ///< voxel of the grid that the surface's points lie on
   /// The stock around the machined surface, drawn in grey; on the lines of a grid of stock_cell_mm. Only places and
   /// normals count.
   SurfaceSamples stock;
   double stock_cell_mm = 0;
   std::vector<PathRun> path;  ///< none, one, or before and after
-  /// Of a program with rotary motion: the page draws the tool and turns the part.
+  /// Machine of a program with rotary motion: the page draws the tool and turns the part.
   std::optional<MachineView> machine{};
   std::vector<Picture> pictures{};
   std::vector<TextTable> tables;

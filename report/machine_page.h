@@ -20,20 +20,21 @@ struct MachinePage {
   std::vector<std::string> warnings{}, notes{};
   std::string time_label = "time at programmed feeds, s";  ///< below the plots
   std::optional<TriangleMesh> part{};                      ///< in the frame of the work offset; none: the path alone
-  Vec3 work_origin_mm = Vec3::Zero();                      ///< of the work offset, in the machine frame
+  Vec3 work_origin_mm = Vec3::Zero();                      ///< origin of the work offset, in the machine frame
   double tool_diameter_mm = 0;                             ///< 0: not known, drawn slim
   std::size_t max_samples = 20000;    ///< above this many, samples are left out; the extremes of every joint stay
   std::size_t max_triangles = 60000;  ///< a part of more triangles is not drawn
 };
 
-/// What a page shows of the machine.
+/// Cards of a page that shows the machine.
 struct MachineCards {
   std::string pictures;            ///< cards of machine and axes; without samples one that says so
   std::string axes;                ///< axis_table; empty without samples
   std::string scripts;             ///< before the end of the body
   std::vector<std::string> notes;  ///< those of the page first
 };
-/// Of `page` only the part, the label of time and the notes count. Requires machine.kinematics.given().
+/// Makes the cards. Of `page` only the part, the label of time and the notes are used. Requires
+/// machine.kinematics.given().
 MachineCards machine_cards(const machine::Machine& machine, std::span<const kinematics::PoseSample> samples,
                            const MachinePage& page);
 

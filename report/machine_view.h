@@ -17,10 +17,10 @@ struct MachineView {
 
 /// True if the tool leaves +Z or a rotary axis turns.
 bool turns(const std::vector<PathRow>& rows);
-/// Of the tools that the rows use.
+/// The view for the tools that the rows use.
 MachineView machine_view(const machine::Job& job, const std::vector<PathRow>& rows);
 
-/// As report/web/src/chain.js reads it.
+/// The kinematic chain in the form that report/web/src/chain.js reads.
 Json chain_json(const machine::Machine& machine);
 /// {chain, tools: {number: [[part, radius, height], ...]}}, parts as of OutlineRing::Part.
 Json machine_json(const MachineView& view);

@@ -6,7 +6,7 @@
 
 namespace camber::report {
 
-/// What the script element holds, and what the page has to say about what was left out.
+/// Contents of the script element, and notes on data that were left out.
 struct PageData {
   std::string index;                  ///< JSON: what lies where in `arrays`, scales, names
   std::string arrays;                 ///< base64, see PackedArrays

@@ -18,7 +18,7 @@ std::string path_card_html(std::string_view title, std::string_view hint);
 /// A picture as the script reads it; tools and feeds where the picture has them.
 Json picture_json(PackedArrays& arrays, const PathPicture& picture, std::string_view name);
 
-/// What the page ends with: index, arrays and script.
+/// End of the page: index, arrays and script.
 std::string path_scripts_html(const Json& index, const PackedArrays& arrays);
 
 /// The card of a whole program, rapids and cutting apart, feeds as a further view; and its scripts.

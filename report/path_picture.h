@@ -9,12 +9,12 @@
 
 namespace camber::report {
 
-/// What leads to a point.
+/// Kind of the motion that leads to a point.
 enum class PathKind : std::uint8_t { start, rapid, line, arc, kept_line, kept_arc };
 
 struct PathPicture {
   std::vector<Vec3> points;
-  std::vector<PathKind> kind;           ///< of the way to each point
+  std::vector<PathKind> kind;           ///< kind of the way to each point
   std::vector<std::uint32_t> block;     ///< that makes it
   std::vector<std::uint8_t> ends;       ///< 1: a block ends at the point
   std::vector<std::uint32_t> tool;      ///< in the spindle; empty: not asked for

@@ -16,7 +16,7 @@ inline constexpr double kNothingHere = std::numeric_limits<double>::quiet_NaN();
 /// A moment of the program. NaN: nothing is known or nothing is cut here.
 struct PathRow {
   double t_s = 0;
-  Vec3 place_mm = Vec3::Zero();  ///< of the tool's tip, actual axes
+  Vec3 place_mm = Vec3::Zero();  ///< position of the tool's tip, actual axes
   Vec3 command_mm = Vec3::Zero();
   std::uint32_t block = 0;  ///< 1-based line being commanded
   bool cutting = false;     ///< G1, G2, G3
@@ -25,10 +25,10 @@ struct PathRow {
   double force_N = kNothingHere;        ///< greatest lateral force
   double deflection_um = kNothingHere;  ///< at the contact's height
   double chip_um = kNothingHere;        ///< thickest chip
-  double error_um = kNothingHere;       ///< of greatest magnitude of the surface made here
+  double error_um = kNothingHere;       ///< error of greatest magnitude of the surface made here
   double shift_um = kNothingHere;       ///< distance from the path of the given program
   // Of programs with rotary motion.
-  Vec3 axis = Vec3::UnitZ();       ///< of the tool, in the part's frame
+  Vec3 axis = Vec3::UnitZ();       ///< axis of the tool, in the part's frame
   Vec3 rotary_rad = Vec3::Zero();  ///< a, b, c, actual
   std::uint32_t tool = 0;          ///< number
 };

@@ -12,7 +12,7 @@ std::string plan_json(const plan::PlanInput& input, const plan::PlanResult& resu
 /// The same for a terminal, within 100 columns.
 std::string plan_text(const plan::PlanInput& input, const plan::PlanResult& result, double compute_s);
 
-/// What no operation machines; empty: nothing.
+/// Sentences about volume that no operation machines; empty: there is none.
 std::vector<std::string> plan_failures(const plan::PlanResult& result);
 
 /// Leave-one-out errors of a case base, for a terminal.

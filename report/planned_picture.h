@@ -6,9 +6,9 @@
 
 namespace camber::report {
 
-/// As program_picture, of the segments of feedmodel::plan_motion: commanded path, before the axes' filters and lag.
-/// Where the speed changes along a long segment its way is drawn in pieces, each with its mean speed. Linear in the
-/// number of blocks.
+/// A picture as of program_picture, of the segments of feedmodel::plan_motion: commanded path, before the axes'
+/// filters and lag. Where the speed changes along a long segment it is drawn in pieces, each with its mean speed.
+/// Linear in the number of blocks.
 PathPicture planned_picture(const nc::Interpretation& program, const machine::Machine& machine, std::size_t most);
 
 }  // namespace camber::report

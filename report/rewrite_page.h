@@ -15,7 +15,7 @@ struct FractionHistogram {
   std::string fraction_of;  ///< "% of the rewritten length"
   std::string axis;         ///< "deviation, um"
   double from = 0, to = 1;
-  int decimals = 3;  ///< of the axis' numbers, at most
+  int decimals = 3;  ///< decimals of the axis' numbers, at most
   std::vector<double> amounts;
 };
 

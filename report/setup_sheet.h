@@ -21,7 +21,7 @@ struct SheetProgram {
 struct SetupSheet {
   const machine::Job& job;
   std::vector<SheetProgram> programs;  ///< in the order in which they run
-  std::vector<std::string> warnings;   ///< of the checks
+  std::vector<std::string> warnings;   ///< warnings of the checks
 };
 
 /// Blank and program zero in two views, every tool drawn to one scale with its numbers (length and radius offset as the

@@ -15,9 +15,9 @@ enum class StudyState {
 std::string_view to_string(StudyState state);
 
 struct StudyRow {
-  std::size_t number = 0;           ///< of the case, from 1
-  std::string hash;                 ///< of all that the case depends on
-  std::string folder;               ///< of its files, from the study's folder
+  std::size_t number = 0;           ///< number of the case, from 1
+  std::string hash;                 ///< checksum over all that the case depends on
+  std::string folder;               ///< folder of its files, from the study's folder
   std::vector<std::string> values;  ///< one per key
   StudyState state = StudyState::open;
   std::vector<std::string> figures;  ///< one per figure: a number, a word, or nothing

@@ -10,8 +10,8 @@
 
 namespace camber::report {
 
-/// Of the JSON. 2: error figures are against the path that CAM commanded (error_um = deflection_um + contour_um);
-/// before, they were against the undeflected sweep as the machine runs it, which is deflection_um now.
+/// Version of the JSON. 2: error figures are against the path that CAM commanded (error_um = deflection_um +
+/// contour_um); in 1 they were against the undeflected sweep as the machine runs it, which is deflection_um now.
 inline constexpr int kSchemaVersion = 2;
 
 /// `traced`: of a prediction at measured positions, else null. `doubts`: why the figures are not reliable.
@@ -34,7 +34,7 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
                          double compute_s, const simulate::TracedRun* traced = nullptr);
 std::string compensate_text(const compensate::CompensationResult& result, double compute_s);
 
-/// Of a nominal surface, what is not judged (simulate/region.h).
+/// Area of a nominal surface that is not judged (simulate/region.h).
 struct RegionFigures {
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;

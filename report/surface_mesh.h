@@ -13,7 +13,7 @@ struct SurfaceMesh {
   /// before and after each for itself.
   std::vector<SurfaceSample> vertices;
   std::vector<std::array<std::uint32_t, 4>> quads;  ///< indices into vertices; the last may repeat the first (triangle)
-  double cell_mm = 0;                               ///< of the cells that a vertex stands for
+  double cell_mm = 0;                               ///< width of the cells that a vertex stands for
 };
 
 /// Surface nets: a vertex for every cell of the grid that the surface passes, a quadrangle for every grid edge that it

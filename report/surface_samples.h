@@ -17,8 +17,8 @@ struct SurfaceSample {
   Vec3 place_mm = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();
   double error_um = 0;            ///< positive: excess material
-  double contour_um = 0;          ///< of error_um, what servo lag and corner rounding do
-  double error_after_um = 0;      ///< of the compensated program, where there is one
+  double contour_um = 0;          ///< part of error_um due to servo lag and corner rounding
+  double error_after_um = 0;      ///< error of the compensated program, where there is one
   double area_mm2 = 1;            ///< weight in scale, histogram and tables; 0 where the model does not hold
   std::uint32_t block = 0;        ///< 1-based line that made the surface here; 0: unknown
   std::uint32_t block_after = 0;  ///< the same in the compensated program

@@ -21,7 +21,7 @@ class TimedTrack {
 
   /// `moves` must outlive this.
   TimedTrack(const machine::Machine& machine, const nc::Interpretation& moves);
-  /// As many of the one as of the other.
+  /// Adds samples. Requires as many of one kind as of the other.
   void add(std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints);
   std::vector<kinematics::PoseSample> take();
 
@@ -36,7 +36,7 @@ class TimedTrack {
   std::size_t every_ = 1, seen_ = 0;
 };
 
-/// Of a whole program with rotary motion. Requires feedmodel::has_rotary_motion.
+/// The track of a whole program with rotary motion. Requires feedmodel::has_rotary_motion.
 std::vector<kinematics::PoseSample> timed_track(const machine::Machine& machine, const nc::Interpretation& moves);
 
 }  // namespace camber::report

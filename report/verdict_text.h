@@ -12,7 +12,7 @@ namespace camber::report {
 struct VerdictText {
   bool success = false;              ///< exit status 0
   std::string headline;              ///< "within the tolerance: ..."
-  std::vector<std::string> reasons;  ///< of no success: a sentence for each cause, worst first
+  std::vector<std::string> reasons;  ///< causes of a failure: a sentence for each, worst first
 };
 
 /// The emitted program is what is judged: not to be relied on, no better than the given one, too deep in the part, or

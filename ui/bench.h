@@ -58,7 +58,7 @@ class Bench {
 
   const Folder& folder_;
   const std::string executable_;
-  std::mutex mutex_;                                                       ///< of the two below
+  std::mutex mutex_;                                                       ///< guards the two below
   std::map<std::string, std::shared_ptr<Process>, std::less<>> going_on_;  ///< what the next of its key stops
   int last_stem_ = 0;
   std::mutex saving_;  ///< one edit after the other

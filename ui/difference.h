@@ -12,8 +12,8 @@ struct Hunk {
   bool operator==(const Hunk&) const = default;
 };
 
-/// What differs, in order; what lies between hunks is equal, line for line. Lines that both programs have once, in the
-/// same order, hold them together (patience diff); time and memory grow with the number of lines.
+/// The hunks that differ, in order; between hunks the texts are equal, line for line. Lines that both programs have
+/// once, in the same order, anchor the comparison (patience diff); time and memory grow with the number of lines.
 std::vector<Hunk> difference(std::string_view before, std::string_view after);
 
 }  // namespace camber::ui

@@ -47,9 +47,9 @@ class Folder {
   std::string path_;
 };
 
-/// What the lines of a job's text say; the commands judge them.
+/// Summary of a job from the lines of its text; the commands judge the values.
 struct JobSummary {
-  std::string name;                   ///< of the job's file
+  std::string name;                   ///< name of the job's file
   std::vector<std::string> programs;  ///< names in the folder
   std::string machine;                ///< name in the folder, or preset:NAME
   std::string units;                  ///< "mm", "inch" or empty

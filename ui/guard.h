@@ -10,12 +10,12 @@ namespace camber::ui {
 
 struct Guard {
   std::string token;        ///< hexadecimal; whoever has it is the user
-  std::string cookie_name;  ///< of the cookie that carries it; with the port, for cookies do not tell ports apart
+  std::string cookie_name;  ///< name of the cookie that carries it; with the port, for cookies do not tell ports apart
   std::string address;      ///< that the server listens on
   std::uint64_t max_upload_bytes = 0;
 };
 
-/// What counts of a request.
+/// Parts of a request that the guard examines.
 struct Asked {
   std::vector<std::string> hosts;    ///< every Host header
   std::vector<std::string> origins;  ///< every Origin header
@@ -50,7 +50,7 @@ bool same_secret(std::string_view a, std::string_view b);
 /// 256 bits of the system's random numbers, hexadecimal. Throws std::runtime_error where it has none.
 std::string new_token();
 
-/// As part of an address: an IPv6 address has brackets.
+/// The host as part of an address: an IPv6 address has brackets.
 std::string host_text(const std::string& address);
 
 }  // namespace camber::ui

@@ -28,7 +28,7 @@ std::vector<JobField> job_fields(std::string_view text);
 struct JobEdit {
   enum class Kind { set, remove, confirm } kind = Kind::set;
   std::string table, key;
-  std::string value{};  ///< of set, as TOML writes it; without line ends
+  std::string value{};  ///< value to set, as TOML writes it; without line ends
 };
 
 /// set: writes the value in its line, in place of the default that stands as a comment, or as a new line of its table,

@@ -43,7 +43,7 @@ class Process {
   pid_t pid_ = -1;
   int errors_ = -1;  ///< its standard error
   std::atomic<bool> stopped_{false};
-  std::mutex mutex_;  ///< of ended_: no signal goes to a number that another process may have by now
+  std::mutex mutex_;  ///< guards ended_: no signal goes to a number that another process may have by now
   bool ended_ = false;
 };
 

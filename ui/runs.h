@@ -25,11 +25,11 @@ std::string_view name_of(RunState state);
 
 struct Run {
   int id = 0;
-  std::string job, name;  ///< of the job's file and of the command
+  std::string job, name;  ///< names of the job's file and of the command
   Command command{};
   RunState state = RunState::queued;
   std::string step{};                       ///< that goes on
-  std::optional<double> share{}, left_s{};  ///< of the step
+  std::optional<double> share{}, left_s{};  ///< progress of the step: fraction done, seconds left
   int status = -1, signal = 0;
   pid_t pid = -1;
   std::time_t begun = 0, ended = 0;
@@ -59,7 +59,7 @@ class Runs {
   std::optional<Run> find(int id) const;
 
   static constexpr std::size_t kMaxRuns = 500;      ///< the oldest that have ended are forgotten
-  static constexpr std::size_t kMaxMessages = 500;  ///< of a run
+  static constexpr std::size_t kMaxMessages = 500;  ///< most messages that are kept of a run
 
  private:
   void work();
@@ -71,10 +71,10 @@ class Runs {
   const std::string executable_;
   const Folder& folder_;
   const std::function<void()> changed_;
-  mutable std::mutex mutex_;  ///< of all below
+  mutable std::mutex mutex_;  ///< guards all below
   std::condition_variable wake_;
   std::vector<Run> runs_;
-  std::unique_ptr<Process> process_;  ///< of the run that goes on
+  std::unique_ptr<Process> process_;  ///< process of the run that goes on
   int running_ = 0, last_id_ = 0;
   bool stop_ = false;
   std::thread worker_;

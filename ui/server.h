@@ -10,7 +10,7 @@ struct ServerOptions {
   std::string folder = ".";
   std::string address = "127.0.0.1";  ///< that it listens on
   int port = 0;                       ///< 0: one that is free
-  std::string executable{};           ///< of the commands: this one
+  std::string executable{};           ///< executable of the commands: this one
   std::uint64_t max_upload_bytes = std::uint64_t{1} << 29;
   /// Called with the address of the page, token included, once the server listens.
   std::function<void(const std::string& url)> ready{};

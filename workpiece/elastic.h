@@ -17,7 +17,7 @@ struct Load {
 };
 
 struct ElasticOptions {
-  double tolerance = 1e-6;  ///< of the residual against the load
+  double tolerance = 1e-6;  ///< tolerance of the residual against the load
   int max_iterations = 400;
 };
 

@@ -30,8 +30,8 @@ class Hexahedron {
  public:
   explicit Hexahedron(double poisson_ratio);
 
-  /// Of the material that has these moments, for Young's modulus 1 and cells 2 wide; K = E c / 2 times this in cells of
-  /// width c. Where the cell is empty it counts as kVoid of the material.
+  /// Stiffness matrix of the material that has these moments, for Young's modulus 1 and cells 2 wide; K = E c / 2
+  /// times this in cells of width c. Where the cell is empty it counts as kVoid of the material.
   CellMatrix stiffness(const Moments& material) const;
   static constexpr double kVoid = 1e-4;
 

@@ -31,7 +31,7 @@ struct SolidOptions {
   /// True where the part is held. `bottom`: its lowest level is held as well.
   std::function<bool(const Vec3&)> held{};
   bool bottom = true;
-  /// Of all that is held, in every direction; not given: it does not move.
+  /// Stiffness of the fixture in every direction; not given: it does not move.
   std::optional<double> fixture_stiffness_N_per_mm{};
 };
 
@@ -42,7 +42,7 @@ class Solid {
   struct Cell {
     std::array<std::int32_t, 8> node;
     std::int32_t kind = 0;             ///< index into kinds(): cells of the same filling share a stiffness
-    std::array<std::int32_t, 3> at{};  ///< of the cell in the grid
+    std::array<std::int32_t, 3> at{};  ///< indices of the cell in the grid
   };
 
   /// Cells of less than a two-hundredth of material are left out, and what hangs on nothing that is held.
@@ -57,12 +57,13 @@ class Solid {
   const std::vector<CellMatrix>& kinds() const { return kinds_; }
   /// E c / 2, by which kinds() are to be multiplied.
   double stiffness_unit_N_per_mm() const { return unit_N_per_mm_; }
-  /// Of a layer of voxels by which the part is held, mm^3. Zero: the part is loose.
+  /// Volume of the layer of voxels by which the part is held, mm^3. Zero: the part is loose.
   double held_mm3() const { return held_mm3_; }
   /// First cell of each layer across x, and the number of all.
   const std::vector<std::size_t>& layers() const { return layers_; }
 
-  /// What a point moves like: of the cell around it, or of the nearest within two cells. Empty where there is none.
+  /// Nodes whose displacements give that of a point: those of the cell around it, or of the nearest within two cells.
+  /// Empty where there is none.
   NodeWeights at(const Vec3& point_mm) const;
 
  private:

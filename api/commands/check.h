@@ -16,16 +16,16 @@ namespace camber::api {
 struct CheckedProgram {
   nc::Interpretation moves;
   nc::Summary summary;
-  std::vector<kinematics::FeedMeaningUse> feed_meanings{};  ///< of a program that turns rotary axes of the machine
+  std::vector<kinematics::FeedMeaningUse> feed_meanings{};  ///< meanings of F in a program that turns rotary axes
   std::optional<double> memory_bytes{};                     ///< that predict needs, about; of a job alone
 };
 
 /// Called with a program that could be read, before it is checked against machine and job.
 using ProgramRead = std::function<void(const nc::Interpretation&)>;
 
-/// As the control of `machine` reads it, where one is given; `job` (with its machine as `machine`) also has its tools,
-/// stock and part checked, and then everything that predict looks at before its cut (predict.h, prepare). `options`:
-/// what the user asks for. Throws InputError.
+/// Reads a program as the control of `machine` does, where one is given. `job` (with its machine as `machine`) also
+/// has its tools, stock and part checked, and then everything that predict checks before its cut (predict.h,
+/// prepare). `options`: options of the user. Throws InputError.
 CheckedProgram check_program(const nc::Program& text, const nc::InterpreterOptions& options,
                              const machine::Machine* machine, const machine::Job* job, Diagnostics& found,
                              const ProgramRead& read = {});

@@ -15,7 +15,7 @@ struct CompensateRequest {
   std::vector<std::string> uncertainty;    ///< files or percentages
   std::string measured, measured_program;  ///< files; empty: none
   std::vector<double> check_voxels_mm;
-  std::optional<double> time_budget_percent{};  ///< of the feed lever
+  std::optional<double> time_budget_percent{};  ///< machine time for the feed lever
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   bool header = false, header_hash = false;
   std::size_t max_stock_crossings = 0;  ///< see compensate::CompensateOptions

@@ -18,7 +18,7 @@ ExplainedKinematics explain_kinematics(const machine::Machine& machine);
 /// `path`: machine.toml, or a job.toml, whose machine counts. Throws InputError, also where there is no [kinematics].
 ExplainedKinematics explain_kinematics(const std::string& path, Diagnostics& found);
 
-/// As JSON text, with a line end.
+/// The explanation as JSON text, with a line end.
 std::string explained_kinematics_json(const ExplainedKinematics& explained);
 
 }  // namespace camber::api

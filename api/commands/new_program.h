@@ -20,8 +20,8 @@ struct NewProgram {
 NewProgram read_new_program(const machine::Machine& machine, const std::string& name, const std::string& text,
                             const nc::InterpreterOptions& interpreter);
 
-/// What kinematics::check_travel says of the new moves, and, with a job whose machine has bodies and where that says
-/// nothing, simulate::check_machine_collisions; at the blocks of the given program.
+/// Runs kinematics::check_travel on the new moves and, for a job whose machine has bodies and where that finds
+/// nothing, simulate::check_machine_collisions. Messages name blocks of the given program.
 void check_new_program(const machine::Machine& machine, const machine::Job* job, const nc::Program& given,
                        nc::Interpretation moves, const std::vector<std::uint32_t>& block_of_line,
                        Diagnostics& diagnostics);

@@ -23,12 +23,12 @@ struct PostureCommand {
   posture::PostureOptions options;
   std::optional<nc::OneDirection> written{};  ///< options.indexed; default: that of the control
   double overhang_step_mm = 0;                ///< greater than zero: shorter overhangs, too
-  bool least_error = false;  ///< of the overhangs, that of the least expected error instead of the shortest
+  bool least_error = false;                   ///< take the overhang of the least expected error instead of the shortest
 };
 
 struct PosturedProgram {
   posture::Postured postured;    ///< without a text where no direction is clear
-  double time_s = 0;             ///< of the whole program on the machine
+  double time_s = 0;             ///< machine time of the whole program
   double given_time_s = 0;       ///< and of the given one
   std::size_t blocked_line = 0;  ///< 1-based; 0: none
   std::size_t unclear_line = 0;  ///< the first of figures.unclear, 1-based; 0: none
@@ -52,7 +52,7 @@ kinematics::PoseTrack posture_track(const PosturedProgram& program, const Postur
 
 /// For people.
 std::string posture_text(const PosturedProgram& program, const PostureCommand& command);
-/// Of the row that is written, and whether another one has the least expected error or is shorter.
+/// Text about the row that is written, and whether another row has the least expected error or is shorter.
 std::string overhang_text(const PosturedOverhangs& overhangs);
 /// With a line end: the figures of the row that is written, and where overhangs were asked for those of all.
 std::string posture_json(const PosturedOverhangs& overhangs, const PostureCommand& command);

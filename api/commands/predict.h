@@ -14,7 +14,7 @@
 
 namespace camber::api {
 
-/// What goes on, and the share of it that is done where that is known.
+/// Reports the stage that runs and, where it is known, the fraction of it that is done (0 to 1).
 using StepProgress = std::function<void(const std::string& what, std::optional<double> share)>;
 
 struct PredictRequest {
@@ -24,12 +24,13 @@ struct PredictRequest {
   std::string columns{};      ///< column map of the trace; empty: its header names columns as Camber does
   bool meshes = false;        ///< also machined.stl, machined.ply and form_error_mesh.ply
   StepProgress progress{};
-  simulate::TargetWork work{};  ///< of the target that other processes have done
+  simulate::TargetWork work{};  ///< target work that other processes have done
   /// The job's, where this process has read them before: they are used up. Null: they are read.
   std::shared_ptr<simulate::ReadPrograms> programs{};
 };
 
-/// Of a prediction from a trace, `setup.program` has the measured motion and `traced` the feed model's.
+/// A job that is ready for its prediction. For a prediction from a trace `setup.program` has the measured motion and
+/// `traced` the feed model's.
 struct PreparedJob {
   simulate::Setup setup;
   simulate::PredictOptions options;
@@ -45,7 +46,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
 simulate::Prediction predict_prepared(const machine::Job& job, PreparedJob& prepared, const PredictRequest& request,
                                       Diagnostics& of_cut);
 
-/// What follows every prediction: what nothing reads any more is given up, and the spindle is checked.
+/// Ends a prediction: releases data that nothing reads any more, and checks the load of the spindle.
 void finish_prediction(const machine::Job& job, PreparedJob& prepared, simulate::Prediction& prediction,
                        Diagnostics& of_cut);
 

@@ -7,7 +7,7 @@
 
 namespace camber::api {
 
-/// As the control of the machine reads the program, with the rotary axes of its chain.
+/// Options with which a program is read as the control of the machine does, with the rotary axes of its chain.
 nc::InterpreterOptions rotary_interpreter_options(const machine::Machine& machine, nc::InterpreterOptions given);
 
 /// Nothing without rotary motion. Otherwise what kinematics::check_travel and check_reference_points say, and
@@ -30,11 +30,11 @@ void place_rotary_moves(const machine::Machine& machine, nc::Interpretation& mov
 /// Whether positions of the axes follow from the program: work offset and tool lengths are known wherever it moves.
 bool joints_known(const nc::Interpretation& moves);
 
-/// Of these checks [tool-length] under tool-centre-point control: without a length it means nothing.
+/// The check [tool-length] alone, under tool-centre-point control: without a length this control means nothing.
 void check_tip_lengths(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                        Diagnostics& diagnostics);
 
-/// Of these checks [tool-length] and [work-offset]: for traces, of which the tip's motion is looked at.
+/// The checks [tool-length] and [work-offset] alone: for traces, whose tip motion is examined.
 void check_tip_control(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                        Diagnostics& diagnostics);
 

@@ -20,7 +20,7 @@ enum class PartStage : std::uint8_t { sweep, solve };
 /// Part of a distributed prediction: what one section has computed in one stage.
 struct PartName {
   PartStage stage = PartStage::sweep;
-  int round = 1;            ///< of solving
+  int round = 1;            ///< number of the solving round, from 1
   std::size_t section = 0;  ///< from 0
   std::size_t sections = 1;
   bool own = false;  ///< what only later stages of the same section read
@@ -28,10 +28,10 @@ struct PartName {
 /// "sweep-003-of-016.part", "solve-1-003-of-016.part", "own-sweep-003-of-016.part"; sections count from 1.
 std::string file_name(const PartName& name);
 
-/// What all parts of one prediction share; parts of another one are refused by its name.
+/// Identifies one prediction. Parts whose key differs are refused, and the message names what differs.
 struct PartKey {
   std::string job_path;  ///< absolute
-  std::string hash;      ///< of job, program and every file that the job reads
+  std::string hash;      ///< checksum over job, program and every file that the job reads
   std::size_t sections = 1;
   std::size_t forces_at = 0;
 };
@@ -78,8 +78,8 @@ class PartFiles : public PartStore {
   PartKey key_;
 };
 
-/// Of the parts in a folder; the hash is theirs. Throws InputError where there is none [part-missing], or where they
-/// are of several numbers of sections [part-sections].
+/// The key of the parts in a folder, with their hash. Throws InputError where there is no part [part-missing], or
+/// where parts have different numbers of sections [part-sections].
 PartKey find_parts(const std::string& folder);
 /// The last round of solving that has a part which is of this prediction, or torn; 0: none.
 int last_round(const std::string& folder, const PartKey& key);
@@ -97,14 +97,14 @@ class SectionRun {
   /// Computes a part unless it is there. False: it was.
   bool sweep(std::size_t section);
   bool solve(std::size_t section, int round);
-  /// What each other section needs of a part that this process has made; for messages.
+  /// Text of a part made by this process that each other section needs, to send as a message.
   std::function<std::string(std::size_t section)> part_for_others(const PartName& name);
   /// Pieces that a round has solved again, in all sections; 0 in rigid coupling.
   std::size_t solved_again(int round);
   /// In one section.
   std::size_t solved_again_in(const PartName& name);
   bool is_static() const { return job_.simulation.coupling == machine::Coupling::static_; }
-  /// What one process has done so far, for the efficiency of many.
+  /// The work that this process has done so far, from which the efficiency of many processes follows.
   const simulate::SectionWork& work() const { return work_; }
   /// The programs, for the merge by the same process (PredictRequest::programs); null where they are too long to be
   /// kept. Ends the run.
@@ -123,11 +123,11 @@ class SectionRun {
   PartStore& store_;
   StepProgress progress_;
   Diagnostics& diagnostics_;
-  Diagnostics said_;  ///< of the job's program
+  Diagnostics said_;  ///< messages about the job's program
   std::optional<simulate::SectionPrograms> programs_;
   std::optional<std::size_t> turn_from_;
   simulate::SectionWork work_;
-  std::vector<removal::Region> regions_;  ///< of all sections, once one is asked for
+  std::vector<removal::Region> regions_;  ///< regions of all sections, once one is asked for
   // In static coupling: of the section that was solved last, whose next round may follow.
   std::optional<simulate::Target> target_;
   std::size_t target_section_ = 0;
@@ -137,7 +137,7 @@ class SectionRun {
 struct SectionFigures {
   std::size_t pieces = 0, rounds = 1;
   std::vector<std::size_t> solved_again{};  ///< pieces, of each round from the second on
-  std::vector<double> largest_change_um{};  ///< of the stock before a piece, likewise
+  std::vector<double> largest_change_um{};  ///< largest change of the stock before a piece, likewise
 };
 /// summary.json of a prediction with them.
 std::string with_sections(const std::string& json, const SectionFigures& figures);

@@ -19,7 +19,7 @@ struct PlannedCase {
   std::string hash;
   std::string folder;       ///< holds job.toml and, with other feeds, program.nc
   std::string job_path;     ///< job.toml
-  std::string output;       ///< of the command: a folder (predict) or a program
+  std::string output;       ///< output of the command: a folder (predict) or a program
   std::string report_path;  ///< report.html
   std::string json_path;    ///< summary.json
   bool done() const;
@@ -27,7 +27,7 @@ struct PlannedCase {
 
 struct StudyPlan {
   machine::Study study;
-  std::string folder;  ///< of the whole study
+  std::string folder;  ///< folder of the whole study
   std::vector<PlannedCase> cases;
 };
 
@@ -38,7 +38,7 @@ StudyPlan plan_study(const std::string& path, const std::string& folder, Diagnos
 /// The command line of a case, for a shell.
 std::string command_line(const StudyPlan& plan, const PlannedCase& one);
 
-/// What is done so far.
+/// The rows of the cases that are finished so far.
 report::StudyTable study_table(const StudyPlan& plan);
 
 /// study.csv, study.json and study.html in the study's folder.

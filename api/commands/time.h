@@ -31,13 +31,13 @@ struct TimeRequest {
   std::string trace, cases;                   ///< files; empty: none
   std::vector<std::string> sweeps;            ///< KEY=FROM:TO:N
   nc::InterpreterOptions interpreter;
-  bool picture = false;  ///< of the path, for a page
+  bool picture = false;  ///< makes a picture of the path, for a page
   std::function<void(double share)> progress;
 };
 
 struct TimedProgram {
   TimeReport report;
-  report::PathPicture picture;   ///< of the first row
+  report::PathPicture picture;   ///< picture of the first row
   report::MachineCards machine;  ///< instead of it, where that program turns rotary axes
 };
 

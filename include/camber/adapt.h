@@ -25,8 +25,8 @@ struct AdaptedLoad {
 
 /// A block that remains beyond a limit.
 struct OverLimitBlock {
-  std::size_t line = 0, new_line = 0;  ///< of the given and of the new program
-  std::string name{};                  ///< of the load
+  std::size_t line = 0, new_line = 0;  ///< line of the given and of the new program
+  std::string name{};                  ///< name of the load
   double value = 0;
   double feed_mm_per_min = 0;  ///< actual
   std::string reason{};

@@ -19,7 +19,7 @@ struct Box {
 
 struct ToolUse {
   int tool = 0;          ///< 0: before any M6
-  std::size_t line = 0;  ///< of its first M6; without one, of its first move
+  std::size_t line = 0;  ///< line of its first M6; without one, of its first move
   std::size_t calls = 0, cutting_moves = 0;
   double cutting_length_mm = 0, rapid_length_mm = 0;
   std::optional<Box> cutting{};  ///< extents of its cutting moves
@@ -28,7 +28,7 @@ struct ToolUse {
 struct CheckResult {
   std::size_t blocks = 0, blocks_with_words = 0;
   std::size_t rapids = 0, lines = 0, arcs = 0, dwells = 0;
-  std::size_t rotary_moves = 0;  ///< of these, moves that turn rotary axes
+  std::size_t rotary_moves = 0;  ///< number of these that turn rotary axes
   double cutting_length_mm = 0, rapid_length_mm = 0, dwell_s = 0;
   std::optional<Box> cutting{}, rapid{};
   std::vector<ToolUse> tools{};           ///< in the order of their first use

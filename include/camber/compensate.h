@@ -15,8 +15,8 @@ struct CompensateOptions {
   std::string measured{};                  ///< points measured on a part, CSV; empty: none
   std::string measured_program{};          ///< program that the measured part was cut with; empty: the job's program
   std::vector<double> check_voxels_mm{};   ///< predict both programs again on these grids
-  /// Of the levers feed and passes ([compensation] levers): the least error for so much more machine time, in percent;
-  /// not given: as much as the tolerance takes.
+  /// Limit of the levers feed and passes ([compensation] levers): the least error within so much more machine time,
+  /// in percent; not given: as much as the tolerance takes.
   std::optional<double> time_budget_percent{};
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   bool header = false, header_hash = false;  ///< write comment lines at the head of the program

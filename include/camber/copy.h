@@ -25,7 +25,7 @@ struct CopyOptions {
   std::string stock{};                            ///< file: what is left is written to it; empty: none
 };
 
-/// What one [[copy]] did.
+/// Result of one [[copy]] table.
 struct CopiedOperation {
   int tool = 0;
   std::string mode{};  ///< "scanning-line", "contour-line", "drilling"
@@ -33,7 +33,7 @@ struct CopiedOperation {
   std::size_t levels = 0, passes = 0, ramps = 0, plunges = 0, retracts = 0;
   bool nothing_left = false;
   double target_N = 0, max_N = 0;  ///< lateral force; target 0: none
-  /// Of the tooth passings whose feed no bound holds, those with 80 to 105 % of the target.
+  /// Fraction with 80 to 105 % of the target load among the tooth passings whose feed no bound holds.
   double within_share = 0;
   std::size_t trochoid_circles = 0;  ///< instead of full cuts, of the trochoids that were begun
 };
@@ -45,7 +45,7 @@ struct CopyResult {
   std::size_t ticks = 0, blocks = 0;
   double gouge_um = 0;                      ///< greatest depth of the path in the part
   double left_p95_um = 0, left_max_um = 0;  ///< on the part, where tools can touch it
-  double unreached_mm2 = 0;                 ///< of the part's surface with material that no tool can touch
+  double unreached_mm2 = 0;                 ///< surface of the part with material that no tool can touch
   bool stopped = false;                     ///< by stop_after_s
   std::string log{};                        ///< changes of feed and depths, CSV
   std::vector<Diagnostic> diagnostics{};    ///< warnings

@@ -39,7 +39,7 @@ struct FeedResult {
   double cutting_time_s = 0;              ///< commanded time in G1, G2, G3
   std::size_t blocks = 0;                 ///< blocks with motion
   std::vector<FeedPoint> points{};        ///< one per interpolation period
-  std::vector<PosePoint> poses{};         ///< of each point, in programs that turn rotary axes; else empty
+  std::vector<PosePoint> poses{};         ///< pose at each point, in programs that turn rotary axes; else empty
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber feed --json` writes them
 };

@@ -36,8 +36,9 @@ class CAMBER_API Job {
 
 /// Reads the job and its machine. Throws InputError with file, line and column.
 CAMBER_API Job read_job(const std::string& path);
-/// As read_job, but the file may leave out the program, or name one that is not there yet: for posture(), or before
-/// set_program(). What needs a program throws InputError, [job-program], where the job has none.
+/// Reads a job as read_job does, but the file may leave out the program, or name one that is not there yet: for
+/// posture(), or before set_program(). A command that needs a program throws InputError, [job-program], where the job
+/// has none.
 CAMBER_API Job read_unprogrammed_job(const std::string& path);
 
 }  // namespace v0

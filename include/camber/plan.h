@@ -13,7 +13,7 @@ inline namespace v0 {
 struct PlanOptions {
   std::string operations{};   ///< file: an edited table of operations to go on from; empty: none
   bool programs = false;      ///< also the programs, by copy milling, and their times
-  bool all_programs = false;  ///< of all three plans; their times decide which one is taken
+  bool all_programs = false;  ///< makes the programs of all three plans; their times decide which one is taken
 };
 
 struct PlannedOperation {
@@ -26,7 +26,7 @@ struct PlannedOperation {
   bool joined = false;  ///< cut in one run with the operation before it
   double spindle_rpm = 0, feed_mm_per_min = 0, radial_mm = 0, axial_mm = 0;
   double nominal_time_s = 0;  ///< volume over removal rate
-  double time_s = 0;          ///< of its program, of a run with its first operation; 0: none was made
+  double time_s = 0;          ///< time of its program, of a run with its first operation; 0: none was made
   std::string limit{};        ///< what bounds the conditions; "cases": nothing but them
   double force_N = 0, form_error_um = 0, power_W = 0;
   std::vector<std::string> notes{};
@@ -35,7 +35,7 @@ struct PlannedOperation {
 struct PlanAlternative {
   std::string division{};  ///< "yz", "zx", "largest"
   double nominal_time_s = 0;
-  double time_s = 0;  ///< of its program; 0: none was made
+  double time_s = 0;  ///< time of its program; 0: none was made
   int tool_changes = 0;
   double form_error_p95_um = 0;
   bool complete = true;
@@ -45,8 +45,8 @@ struct PlanAlternative {
 struct PlanResult {
   bool success = false;                         ///< everything is machined
   std::vector<std::string> unmachined{};        ///< what is not, and why
-  std::vector<PlanAlternative> alternatives{};  ///< of the first set-up
-  std::vector<PlannedOperation> operations{};   ///< of the plans that are taken
+  std::vector<PlanAlternative> alternatives{};  ///< plans of the first set-up
+  std::vector<PlannedOperation> operations{};   ///< operations of the plans that are taken
   double removal_mm3 = 0;                       ///< blank minus part
   /// Files that `camber plan` writes to its folder, but for plan.json and report.html: names and contents.
   std::vector<std::pair<std::string, std::string>> files{};

@@ -15,12 +15,12 @@ inline namespace v0 {
 
 struct PostOptions {
   bool to_tip = false;              ///< back to the tip; else to joint coordinates
-  double tolerance_mm = 0.005;      ///< of the tip in feed moves, rounding included
+  double tolerance_mm = 0.005;      ///< tolerance of the tip in feed moves, rounding included
   double rapid_tolerance_mm = 0.1;  ///< the same in rapids
   bool inverse_time = false;        ///< G93 in rewritten feed moves
   bool one_degree = false;          ///< divide by angles of the rotary axes instead
   double retract_mm = 50;           ///< along the tool, where axes turn back
-  std::optional<int> decimals{};    ///< of lengths and angles; default: the program's, at least 4
+  std::optional<int> decimals{};    ///< decimals of lengths and angles; default: the program's, at least 4
 };
 
 struct PostResult {
@@ -28,7 +28,7 @@ struct PostResult {
   std::size_t moves = 0, feed_moves = 0, feed_blocks = 0;
   double tip_bound_mm = 0;                ///< no point of the tip's way in feed moves is farther from the true one
   std::size_t turns_back = 0;             ///< places at which axes turn back
-  std::size_t turns_back_in_cuts = 0;     ///< of them, in a cut
+  std::size_t turns_back_in_cuts = 0;     ///< number of them in a cut
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber post --json` writes them
 };

@@ -25,7 +25,7 @@ struct PostureOptions {
   bool stock = true;                   ///< that of the job is an obstacle, but for the flutes
   double lead_deg = 10, tilt_deg = 0;  ///< lead-tilt
   double max_tilt_deg = 75;
-  double least_angle_deg = 10;  ///< of tool and normal
+  double least_angle_deg = 10;  ///< smallest angle between tool and normal
 };
 
 struct PostureFigures {
@@ -33,11 +33,11 @@ struct PostureFigures {
   std::size_t points = 0, contacts = 0;
   std::size_t unclear = 0;  ///< points at which, or on the way to which, the tool is too near or swings
   double rotary_motion_deg = 0;
-  double mean_angle_deg = 0, max_angle_deg = 0;  ///< of tool and normal
+  double mean_angle_deg = 0, max_angle_deg = 0;  ///< angles between tool and normal
   double compliance_um_per_N = 0;                ///< normal to the part
   double lag_um = 0;                             ///< left by axes that follow late, normal to the part, mean
   double error_um = 0;                           ///< expected form error, mean magnitude: deflection and lag
-  double time_s = 0;                             ///< of the program on the machine
+  double time_s = 0;                             ///< machine time of the program
 };
 
 struct PostureResult {
@@ -45,7 +45,7 @@ struct PostureResult {
   std::size_t blocked_line = 0;             ///< where no direction is clear; 0: none
   std::size_t unclear_line = 0;             ///< the first with points of figures.unclear; 0: none
   std::string text{};                       ///< the new program; empty: blocked
-  PostureFigures figures{};                 ///< of it
+  PostureFigures figures{};                 ///< figures of this overhang
   std::vector<PostureFigures> overhangs{};  ///< with overhang_step_mm: from the given one to the shortest
   std::vector<Diagnostic> diagnostics{};    ///< warnings
   std::string json{};                       ///< all figures, as `camber posture --json` writes them

@@ -53,7 +53,7 @@ struct ErrorPoint {
   std::int64_t block = 0;     ///< 1-based line that generated the surface here; 0: unknown
   std::int64_t tool = 0;      ///< 0: unknown
   bool valid = true;          ///< the model holds here; figures are of valid points
-  double tool_deflection_um = 0, part_deflection_um = 0;  ///< of deflection_um; a rigid workpiece has none of it
+  double tool_deflection_um = 0, part_deflection_um = 0;  ///< parts of deflection_um; a rigid workpiece has none of it
 };
 
 /// A row of spindle_load.csv: the heaviest turn of the spindle in a line, for cutting alone.
@@ -65,7 +65,7 @@ struct SpindleLoadRow {
 /// A vertex of a mesh.
 struct MeshPoint {
   double x_mm = 0, y_mm = 0, z_mm = 0, nx = 0, ny = 0, nz = 0;
-  double error_um = 0, deflection_um = 0, contour_um = 0;  ///< of largest magnitude near it; machined part: zero
+  double error_um = 0, deflection_um = 0, contour_um = 0;  ///< values of largest magnitude near it; machined part: zero
   std::int64_t block = 0;                                  ///< line that made the surface here; 0: unknown
 };
 
@@ -90,7 +90,7 @@ struct PredictOptions {
   bool meshes = false;    ///< also fill the meshes of the result, and write them where there is an output_folder
 };
 
-/// Of PredictOptions::trace: what the feed model predicts beside it.
+/// Prediction of the feed model beside the measured motion of PredictOptions::trace.
 struct TraceComparison {
   bool by_line = false;  ///< samples were matched by the line column; else by place
   std::int64_t samples = 0;
@@ -105,7 +105,7 @@ struct PredictResult {
   double force_max_N = 0;               ///< largest lateral force
   double chips_mm3 = 0, stock_mm3 = 0;  ///< removed volume, from the chips and from the stock
   ErrorFigures form_error_um{}, deflection_um{}, contour_um{};
-  ErrorFigures tool_deflection_um{}, part_deflection_um{};  ///< of deflection_um
+  ErrorFigures tool_deflection_um{}, part_deflection_um{};  ///< parts of deflection_um
   double unseen_mm2 = 0;                                    ///< area of the nominal surface without a point
   std::optional<TraceComparison> trace{};
   std::vector<ForceRow> forces{};

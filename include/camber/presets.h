@@ -16,7 +16,7 @@ struct MachinePreset {
 
 /// A coefficient of the force law, and the range that the scatter of the preset gives it.
 struct PresetCoefficient {
-  std::string key{};  ///< of [material]
+  std::string key{};  ///< key of [material]
   std::string unit{};
   double value = 0, low = 0, high = 0;
 };
@@ -29,7 +29,7 @@ struct MaterialPreset {
   std::string range{};         ///< what they hold for
   std::string names{};         ///< further names, separated by blanks
   double hardness_HB = 0;      ///< as supplied; 0: not a metal
-  double scatter_percent = 0;  ///< of the force between sources and heats
+  double scatter_percent = 0;  ///< scatter of the force between sources and heats
   std::vector<PresetCoefficient> coefficients{};
 };
 

@@ -18,7 +18,7 @@ struct ReadOptions {
   std::vector<int> skip_switches{};  ///< skip blocks that begin with /N, N = 1 to 9; / is /1
   std::string dialect{};          ///< fanuc, haas, mazak, linuxcnc, ...; empty: the machine's, or what the text shows
   bool least_increments = false;  ///< X1000 without a point is 1000 least increments (1 mm), not 1000 mm
-  std::map<int, double> tool_lengths_mm{};  ///< of tool offset H, gauge line to tip; to check the travel of the axes
+  std::map<int, double> tool_lengths_mm{};  ///< lengths by H, gauge line to tip; to check travel
   /// Machine coordinates of work offsets, by name ("G54", "G59.1", "G54.1P7"): X, Y, Z in mm; A, B, C in degrees may
   /// follow.
   std::map<std::string, std::vector<double>> work_offsets{};

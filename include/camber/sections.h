@@ -13,10 +13,10 @@ namespace camber {
 inline namespace v0 {
 
 struct SectionOptions {
-  std::size_t sections = 1;   ///< of the path
+  std::size_t sections = 1;   ///< number of sections of the path
   std::size_t section = 1;    ///< which one is computed, 1 ... sections
   bool solve = false;         ///< all sections are swept first, then solved
-  int round = 1;              ///< of solving, in static coupling
+  int round = 1;              ///< number of the solving round, in static coupling
   std::size_t forces_at = 0;  ///< see PredictOptions
 };
 

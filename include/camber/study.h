@@ -10,9 +10,9 @@ namespace camber {
 inline namespace v0 {
 
 struct StudyCase {
-  std::string hash{};                 ///< of all that the result depends on; the same case of another study has it too
+  std::string hash{};                 ///< checksum over all that the result depends on, the same in any study
   std::string job_path{};             ///< its job.toml, for read_job
-  std::string folder{};               ///< of its files; predict writes its results here
+  std::string folder{};               ///< folder of its files; predict writes its results here
   std::string output{};               ///< the new program of compensate and adapt; empty for predict
   std::string report{};               ///< the case's page
   std::string json{};                 ///< the case's figures: what study.json reads

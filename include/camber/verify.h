@@ -14,7 +14,7 @@ struct VerifyResult {
   bool success = false;   ///< within the tolerance and the depth limit, with reliable figures
   std::string headline{};
   std::vector<std::string> reasons{};                      ///< reasons why it is not, worst first
-  ErrorFigures error_um{}, deflection_um{}, contour_um{};  ///< of the emitted program
+  ErrorFigures error_um{}, deflection_um{}, contour_um{};  ///< figures of the emitted program
   double gouge_depth_p999_um = 0;                          ///< 99.9 % of the surface lies above it
   double depth_limit_um = 0;
   double machine_time_s = 0;
