@@ -21,7 +21,7 @@ class Reference(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
-        for room in ("machine", "calib", "feedmodel", "inspect", "plan", "report", "api", "cli",
+        for room in ("machine", "calib", "feedmodel", "inspect", "plan", "report", "api", "cli", "nc",
                      "docs/reference"):
             shutil.copytree(SOURCE / room, self.root / room, ignore=shutil.ignore_patterns("web"))
 
@@ -37,7 +37,7 @@ class Reference(unittest.TestCase):
         self.assertIn(f"{path}: {key} stands in no line", out)
 
     def test_the_repository_is_complete(self):
-        self.assertEqual(check(SOURCE), (0, "reference: 4 pages, every key in one\n"))
+        self.assertEqual(check(SOURCE), (0, "reference: 6 pages, every key in one\n"))
         self.assertEqual(check(self.root)[0], 0)
 
     def test_a_new_number_of_the_machine(self):
@@ -47,6 +47,18 @@ class Reference(unittest.TestCase):
     def test_a_new_key_of_the_job(self):
         self.edit("machine/job_reader.cpp", '"allowance_mm"', '"thickness_mm"')
         self.assert_missing("thickness_mm", "machine/job_reader.cpp")
+
+    def test_a_new_name_of_a_material(self):
+        self.edit("machine/material_presets.cpp", "S45C S48C", "S45C S45CM S48C")
+        status, out = check(self.root)
+        self.assertEqual(status, 1)
+        self.assertIn("docs/reference/materials.md: is not what scripts/reference makes", out)
+
+    def test_a_word_of_sinumerik_that_is_refused(self):
+        self.edit("nc/siemens/words.cpp", "Does::chamfer, ", "Does::refused, ")
+        status, out = check(self.root)
+        self.assertEqual(status, 1)
+        self.assertIn("docs/reference/siemens-words.md: is not what scripts/reference makes", out)
 
     def test_a_renamed_number(self):
         self.edit("machine/machine_keys.h", '{"orient_s"', '{"turn_s"')
