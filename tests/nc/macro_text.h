@@ -17,7 +17,7 @@ inline std::string ends_of(const Read& r) {
   return out;
 }
 
-/// As ends_of, with all that is said before it.
+/// The same as ends_of, with all messages before it.
 inline std::string run_text(const std::string& text, const InterpreterOptions& options = as("fanuc")) {
   const Read r = read_text("G0 X0 Y0 Z0\n" + text, options);
   std::string out;

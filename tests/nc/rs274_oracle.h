@@ -109,7 +109,7 @@ inline std::string run_rs274(const std::string& text, const std::map<std::string
   return pclose(pipe) == 0 ? out : "rs274 failed: " + out.substr(out.size() > 300 ? out.size() - 300 : 0);
 }
 
-/// What was compared by one test; printed at its end.
+/// Counts of the comparisons of one test; printed at its end.
 class Rs274 : public testing::Test {
  protected:
   void TearDown() override {

@@ -18,8 +18,8 @@ namespace camber::testing {
 
 /// A cut: the cutter, where it stands at every tooth passing, and what it meets.
 struct DrawnCut {
-  double radius = 3, corner = 3;  ///< of the cutter; corner = radius: ball, 0: flat
-  double taper_rad = 0;           ///< of a ball's wall from the axis
+  double radius = 3, corner = 3;  ///< radii of the cutter; corner = radius: ball, 0: flat
+  double taper_rad = 0;           ///< angle of a ball's wall from the axis
   int flutes = 2;
   double helix_rad = 0;
   /// Where teeth that are not even stand from the first one, against the turning direction; empty: even teeth.
@@ -27,7 +27,7 @@ struct DrawnCut {
   double run_out_mm = 0, run_out_rad = 0;  ///< offset of the axis, its direction from the first tooth; with the former
   double top = 1;                          ///< nothing is cut higher than this above the tip
   std::vector<removal::Stamp> stamps;
-  Vec3 lo = Vec3::Constant(-1e9), hi = Vec3::Constant(1e9);  ///< of the blank's box
+  Vec3 lo = Vec3::Constant(-1e9), hi = Vec3::Constant(1e9);  ///< corners of the blank's box
   /// What the pass before has left: the same stamps with the cutter smaller by this; 0: the whole box.
   double allowance = 0;
   std::vector<removal::Stamp> pass_before{};  ///< where that pass went, if not along `stamps`
@@ -39,7 +39,7 @@ struct DrawnCut {
 
   bool even() const { return tooth_at_rad.empty(); }
   int steps() const { return steps_per_pitch * flutes; }  ///< a turn
-  /// Of a turn, after which the force is the same again.
+  /// Rotation steps of a turn, after which the force is the same again.
   int instants() const { return even() ? steps_per_pitch : steps(); }
   std::size_t tooth_of(std::size_t passing) const { return even() ? 0 : passing % tooth_at_rad.size(); }
   double tooth_rad(std::size_t tooth) const { return even() ? 0.0 : tooth_at_rad[tooth]; }

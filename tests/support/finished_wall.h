@@ -25,9 +25,9 @@ struct FinishedWall {
   std::vector<double> pitch_deg{};         ///< from each tooth to the next, of teeth that are not even
   double run_out_mm = 0, run_out_deg = 0;  ///< with pitch_deg
   double voxel_mm = 0.1;
-  Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
+  Vec3 offset_mm = Vec3::Zero();  ///< shift of path and stock against the grid
   double edge_step_mm = 0;        ///< Camber's; 0: as predict sets it
-  double slice_mm = 0.5;          ///< of the height, over which the error is averaged
+  double slice_mm = 0.5;          ///< part of the height over which the error is averaged
   int drawn_steps = 1440;         ///< a turn
   double rotation_step_deg = 1;   ///< Camber's
   double young_MPa = 600000, overhang_mm = 40;

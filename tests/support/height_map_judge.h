@@ -40,7 +40,7 @@ struct Cutter {
 struct Worst {
   double depth = 0;
   Point place{};
-  int line = 0;  ///< of the program, where it is known
+  int line = 0;  ///< line of the program, where it is known
   void take(double d, const Point& p, int l) {
     if (d > depth) depth = d, place = p, line = l;
   }
@@ -185,7 +185,7 @@ class HeightMap {
     return deepest;
   }
 
-  /// What a cutter leaves that goes as deep as the part allows everywhere, with its tip no higher than `highest`.
+  /// Surface of a cutter that goes as deep as the part allows everywhere, with its tip no higher than `highest`.
   std::vector<double> reach(const std::vector<double>& tops, const Cutter& cutter, double grown, double highest) const {
     const auto disc_of = [&](double radius) {
       const int n = static_cast<int>(std::floor(radius / cell_));

@@ -20,14 +20,14 @@ struct InclinedPlane {
   double along_x = -1;  ///< direction of the feed; 0: to and fro
   double along_slope =
       0;  ///< 1: rows run up the slope, -1: down, and follow each other along X (upwards) or -X; 0: along X
-  double corner_mm = 0;                    ///< of a bull-nose cutter; 0: a ball
-  double taper_deg = 0;                    ///< of a ball's wall
+  double corner_mm = 0;                    ///< corner radius of a bull-nose cutter; 0: a ball
+  double taper_deg = 0;                    ///< angle of a ball's wall
   std::vector<double> pitch_deg{};         ///< from each tooth to the next, of teeth that are not even
   double run_out_mm = 0, run_out_deg = 0;  ///< with pitch_deg
   int flutes = 2;
   double helix_deg = 30;
   double voxel_mm = 0.1;
-  Vec3 offset_mm = Vec3::Zero();  ///< of path and stock against the grid
+  Vec3 offset_mm = Vec3::Zero();  ///< shift of path and stock against the grid
   double radius_mm = 3, diameter_step_mm = 0.06;
   double rotation_step_deg = 1;
   int drawn_steps = 360;  ///< a pitch

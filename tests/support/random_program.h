@@ -38,7 +38,7 @@ inline std::ostream& operator<<(std::ostream& out, const RandomBlock& b) {
                             b.flags);
 }
 
-/// What a writer leaves out where the other reader does not share it.
+/// Features that a writer leaves out because the other reader does not share them.
 struct ProgramOptions {
   bool block_skip = true;
   bool ends_in_blocks = true;  ///< M1 M5 M9 G9 in blocks with moves

@@ -23,7 +23,7 @@ inline EdgeLaw edge_law_of(const machine::Material& m, double ramp_mm) {
 struct JudgeSteps {
   double rotation_deg = 0.25, edge_mm = 0.03, grid_mm = 0.02;
   int bent_rows = 8;     ///< after rows that an unbent tool has cut
-  double length_mm = 5;  ///< of the plane along the rows
+  double length_mm = 5;  ///< length of the plane along the rows
   double ramp_mm = 0.002;
 };
 

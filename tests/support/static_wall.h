@@ -24,7 +24,7 @@ struct WallJudgeSteps {
 
 /// One cut along the wall.
 struct WallPass {
-  double offset_mm = 0;  ///< of the path towards the wall
+  double offset_mm = 0;  ///< shift of the path towards the wall
   double feed_mm = 0;    ///< per tooth
 };
 
@@ -50,7 +50,7 @@ class WallJudge {
 
   JudgedWall figures() { return figures({{0, w_.feed_mm}}); }
 
-  /// What `passes` leave, one after the other, less what one cut with a stiff tool would.
+  /// The wall that `passes` leave, one after the other, less the one that a stiff tool would leave.
   JudgedWall figures(const std::vector<WallPass>& passes) {
     HeightMap bent = blank(), rigid = blank(), before = bent;
     JudgedWall f;
@@ -143,7 +143,7 @@ inline JudgedWall judged_figures(const FinishedWall& w, const WallJudgeSteps& s 
   return detail::WallJudge(w, s).figures();
 }
 
-/// Of a wall that several cuts finish. Loads are the last one's.
+/// Result for a wall that several cuts finish. Loads are those of the last cut.
 inline JudgedWall judged_figures(const FinishedWall& w, const std::vector<WallPass>& passes,
                                  const WallJudgeSteps& s = {}) {
   return detail::WallJudge(w, s).figures(passes);

@@ -22,11 +22,11 @@ inline machine::Tool tool_of(machine::ToolType type) {
   return tool;
 }
 
-/// What is cut by an upright tool: rows along x that climb or follow a plane.
+/// Scene for an upright tool: rows along x that climb or follow a plane.
 struct TiltedScene {
   machine::Tool tool;
   std::vector<removal::Stamp> stamps{};
-  Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();  ///< of the stock
+  Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();  ///< corners of the stock's box
   double voxel_mm = kTiltedVoxel_mm;
 };
 

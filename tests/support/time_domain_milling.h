@@ -49,7 +49,7 @@ struct TurningTool {
   }
 };
 
-/// What happened in one tooth period.
+/// Loads and deflections of one tooth period.
 struct Period {
   Vec3 tip = Vec3::Zero();  ///< at its end
   double lateral_max_N = 0;
@@ -295,7 +295,7 @@ class TimeDomainMilling {
     std::swap(now_, before_);
   }
 
-  /// What the edge between points k - 1 and k has swept since the step before.
+  /// Area that the edge between points k - 1 and k has swept since the step before.
   void cut(std::size_t k, Period& period) {
     const Point &a = before_[k - 1], &b = before_[k], &c = now_[k - 1], &d = now_[k];
     const Chart& chart = surface_.chart();

@@ -81,7 +81,7 @@ class Workbench {
   }
   bool goes_on() const { return waitpid(pid_, nullptr, WNOHANG) == 0; }
 
-  /// As a browser that has the cookie; `other` replaces headers.
+  /// Request of a browser that has the cookie; `other` replaces headers.
   Answer ask(const std::string& method, const std::string& target, const std::string& body = "",
              const Headers& other = {}) const {
     Headers headers{{"Host", "127.0.0.1:" + std::to_string(port_)}, {"Cookie", cookie()}};
