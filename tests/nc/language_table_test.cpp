@@ -1,4 +1,4 @@
-// docs/reference/nc-language.md names every code of the table in modal_codes.cpp, in its group, and no other.
+// docs/reference/nc-codes.md names every code of the table in modal_codes.cpp, in its group, and no other.
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -19,7 +19,7 @@ std::string code_name(char letter, int tenths) {
 
 /// Rows of the tables of codes: the code and its group. A code in two rows gets both groups.
 std::map<std::string, std::string> documented(char letter) {
-  std::ifstream in(CAMBER_SOURCE_DIR "/docs/reference/nc-language.md");
+  std::ifstream in(CAMBER_SOURCE_DIR "/docs/reference/nc-codes.md");
   EXPECT_TRUE(in.good());
   std::map<std::string, std::string> out;
   for (std::string line; std::getline(in, line);) {

@@ -37,7 +37,7 @@ class Reference(unittest.TestCase):
         self.assertIn(f"{path}: {key} stands in no line", out)
 
     def test_the_repository_is_complete(self):
-        self.assertEqual(check(SOURCE), (0, "reference: 6 pages, every key in one\n"))
+        self.assertEqual(check(SOURCE), (0, "reference: 7 pages, every key in one\n"))
         self.assertEqual(check(self.root)[0], 0)
 
     def test_a_new_number_of_the_machine(self):
@@ -59,6 +59,10 @@ class Reference(unittest.TestCase):
         status, out = check(self.root)
         self.assertEqual(status, 1)
         self.assertIn("docs/reference/siemens-words.md: is not what scripts/reference makes", out)
+
+    def test_a_code_without_words(self):
+        self.edit("nc/modal_codes.cpp", "    Entry{30, {GGroup::motion}},", "    Entry{30, {GGroup::motion}},\n    Entry{35, {GGroup::motion}},")
+        self.assertEqual(check(self.root)[0], 1)
 
     def test_a_renamed_number(self):
         self.edit("machine/machine_keys.h", '{"orient_s"', '{"turn_s"')
