@@ -87,7 +87,7 @@ std::optional<CaseAnswer> conditions_by_cases(const CaseBase& base, const CaseCo
 struct LeftOut {
   const Case* of = nullptr;
   double speed_ratio = 0;              ///< predicted / true
-  std::optional<double> feed_ratio{};  ///< factor of the feed per turn
+  std::optional<double> feed_ratio{};  ///< predicted / true, of the feed per turn
   bool similar = true;
 };
 std::vector<LeftOut> leave_one_out(const CaseBase& base);
