@@ -57,7 +57,5 @@ TEST_F(Page, RunsAllJobsOfAShopAndShowsResultsSideBySide) {
   EXPECT_EQ(checked("shop"), "");
 }
 
-TEST_F(Page, IsSeenWithinASecond) { EXPECT_EQ(checked("first_paint"), ""); }
-
 }  // namespace
 }  // namespace camber

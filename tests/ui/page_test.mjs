@@ -248,13 +248,13 @@ const CHECKS = {
   },
 
   // Until something is seen, and until everything is there.
+  // Measured by bench/ui/run.
   async first_paint(page) {
     // In a browser that runs already: its own start is not the page's.
     await page.reload();
     await ready(page);
     await page.waitForFunction(() => performance.getEntriesByName('first-contentful-paint').length);
     const paint_ms = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0].startTime);
-    expect(paint_ms < 1000, `the first paint took ${paint_ms} ms`);
     writeFileSync(join(folder, 'paint.json'), JSON.stringify({ paint_ms }));
   },
 };
