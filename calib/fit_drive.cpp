@@ -309,12 +309,31 @@ std::size_t judged_samples(const std::vector<Slice>& slices, bool held_out) {
   return n;
 }
 
+/// Of the axis at every fitted sample, by the model, in the unit of the residuals per second.
+std::vector<double> modelled_speeds(const Candidate& c, const std::vector<Slice>& slices) {
+  std::vector<double> speeds;
+  for (const Slice& s : slices) {
+    if (s.held_out) continue;
+    Drive drive(options_of(c.model, c.p, s.period_s), s.command.front());
+    double before = s.command.front();
+    for (std::size_t k = 0; k < s.command.size(); ++k) {
+      const double position = drive(s.command[k]);
+      if (k >= s.warm_up) speeds.push_back(kPositionScale * (position - before) / s.period_s);
+      before = position;
+    }
+  }
+  return speeds;
+}
+
 /// Sandwich over pieces of the slices, with the correction for few of them, and what a shift by a fraction of the
-/// sample distance would do.
+/// sample distance would do: to a number alone, and to all of them together, where some make up for each other.
 void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vector<double>& residuals,
                 const ceres::CRSMatrix& jacobian) {
   const int n = c.model.count();
+  const double shift_s = kSamplingFraction * slices.front().period_s, gain = std::exp(c.p[log_gain]);
+  const std::vector<double> speeds = modelled_speeds(c, slices);
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n), middle = normal;
+  Eigen::VectorXd shifted = Eigen::VectorXd::Zero(n);
   int row = 0, pieces = 0;
   for (const Slice& s : slices) {
     if (s.held_out) continue;
@@ -326,6 +345,7 @@ void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vecto
         const Eigen::Map<const Eigen::VectorXd> j(&jacobian.values[static_cast<std::size_t>(jacobian.rows[row])], n);
         normal += j * j.transpose();
         score += j * residuals[static_cast<std::size_t>(row)];
+        shifted += j * (shift_s * speeds[static_cast<std::size_t>(row)]);
       }
       middle += score * score.transpose();
       ++pieces;
@@ -338,12 +358,12 @@ void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vecto
   if (!lu.isInvertible()) return;
   const Eigen::MatrixXd inverse = scale.asDiagonal() * lu.inverse() * scale.asDiagonal();
   const Eigen::MatrixXd covariance = inverse * middle * inverse;
-  const double shift_s = kSamplingFraction * slices.front().period_s, gain = std::exp(c.p[log_gain]);
-  const Numbers sampling{shift_s * gain, shift_s / std::exp(c.p[log_lag]), shift_s * gain, shift_s, shift_s, 0};
+  const Eigen::VectorXd together = inverse * shifted;
+  const Numbers alone{shift_s * gain, shift_s / std::exp(c.p[log_lag]), shift_s * gain, shift_s, shift_s, 0};
   int k = 0;
   for (std::size_t i = 0; i < kNumbers; ++i)
     if (c.model.free[i]) {
-      c.error[i] = std::hypot(std::sqrt(std::max(0.0, covariance(k, k))), sampling[i]);
+      c.error[i] = std::hypot(std::sqrt(std::max(0.0, covariance(k, k))), std::max(alone[i], std::abs(together[k])));
       ++k;
     }
 }

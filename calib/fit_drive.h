@@ -50,8 +50,8 @@ struct DriveFitOptions {
 /// the feed forward is not determined (infinite error) and the gain is gain / (1 - feed forward).
 ///
 /// Standard errors: sandwich over half seconds (n of them and p numbers: times n / (n - p)); beside it how far the
-/// models differ whose held-out error is less than one and a half times the best and which determine the number, and a
-/// twentieth of the sample distance, for what happens between samples.
+/// models differ whose held-out error is less than one and a half times the best and which determine the number, and
+/// what a shift by a twentieth of the sample distance changes, for what happens between samples.
 DriveFit fit_drive(const std::vector<const ServoTrace*>& traces, int axis, const DriveFitOptions& options);
 
 /// RMS of predicted minus traced position over the traces, mm; of all samples but the first half second of a stretch
