@@ -53,7 +53,28 @@ struct Slice {
   bool held_out = false;
   std::size_t warm_up = 0;  // samples that are not judged
   std::vector<double> command, actual;
+  std::size_t steps = 1;     // of the drive from sample to sample
+  std::vector<double> fine;  // so many commands for each sample, the last of them its own
+
+  double step_s() const { return period_s / static_cast<double>(steps); }
 };
+
+/// The command between samples on a cubic through four of them: a log that leaves samples out shows the ramps of a
+/// finer interpolation so, where straight lines would cut them off.
+void fill_between(Slice& slice, std::size_t steps) {
+  const std::vector<double>& c = slice.command;
+  slice.steps = steps;
+  slice.fine.assign(steps, c.front());
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    const double from = c[k - 1], to = c[k], before = k > 1 ? c[k - 2] : 2 * from - to,
+                 after = k + 1 < c.size() ? c[k + 1] : 2 * to - from;
+    for (std::size_t i = 1; i <= steps; ++i) {
+      const double u = static_cast<double>(i) / static_cast<double>(steps), v = 1 - u;
+      slice.fine.push_back(v * from + u * to -
+                           u * v * (v * (before - 2 * from + to) + u * (from - 2 * to + after)) / 2);
+    }
+  }
+}
 
 struct Model {
   Free free{true};
@@ -75,14 +96,23 @@ DriveOptions options_of(const Model& model, const Numbers& p, double period_s) {
           .period_s = period_s};
 }
 
+/// `use(sample, position)` for each sample of a slice, by the model.
+template <class Use>
+void follow(const Slice& slice, const Model& model, const Numbers& p, const Use& use) {
+  Drive drive(options_of(model, p, slice.step_s()), slice.command.front());
+  double position = 0;
+  for (std::size_t i = 0; i < slice.fine.size(); ++i) {
+    position = drive(slice.fine[i]);
+    if ((i + 1) % slice.steps == 0) use(i / slice.steps, position);
+  }
+}
+
 /// `use(error)` for each sample of a slice that is judged.
 template <class Use>
-void run(const Slice& slice, const DriveOptions& options, const Use& use) {
-  Drive drive(options, slice.command.front());
-  for (std::size_t k = 0; k < slice.command.size(); ++k) {
-    const double position = drive(slice.command[k]);
+void run(const Slice& slice, const Model& model, const Numbers& p, const Use& use) {
+  follow(slice, model, p, [&](std::size_t k, double position) {
     if (k >= slice.warm_up) use(position - slice.actual[k]);
-  }
+  });
 }
 
 // --- slices ---------------------------------------------------------------------------------------------------
@@ -141,6 +171,7 @@ void add_slices(const EvenSamples& samples, double slice_s, std::vector<Slice>& 
     const auto at = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
     s.command.assign(samples.command.begin() + at(from), samples.command.begin() + at(end));
     s.actual.assign(samples.actual.begin() + at(from), samples.actual.begin() + at(end));
+    s.fine = s.command;
     out.push_back(std::move(s));
   };
   std::size_t moves_from = 0;
@@ -278,8 +309,7 @@ class DriveResiduals {
     cancellation_point();
     const Numbers p = with_free(parameters[0]);
     for (const Slice& s : slices_)
-      if (!s.held_out)
-        run(s, options_of(model_, p, s.period_s), [&](double error) { *residuals++ = kPositionScale * error; });
+      if (!s.held_out) run(s, model_, p, [&](double error) { *residuals++ = kPositionScale * error; });
     return true;
   }
 
@@ -314,13 +344,11 @@ std::vector<double> modelled_speeds(const Candidate& c, const std::vector<Slice>
   std::vector<double> speeds;
   for (const Slice& s : slices) {
     if (s.held_out) continue;
-    Drive drive(options_of(c.model, c.p, s.period_s), s.command.front());
     double before = s.command.front();
-    for (std::size_t k = 0; k < s.command.size(); ++k) {
-      const double position = drive(s.command[k]);
+    follow(s, c.model, c.p, [&](std::size_t k, double position) {
       if (k >= s.warm_up) speeds.push_back(kPositionScale * (position - before) / s.period_s);
       before = position;
-    }
+    });
   }
   return speeds;
 }
@@ -372,7 +400,7 @@ void judge(Candidate& c, const std::vector<Slice>& slices) {
   double sum[2] = {0, 0};
   std::size_t n[2] = {0, 0};
   for (const Slice& s : slices)
-    run(s, options_of(c.model, c.p, s.period_s), [&](double error) {
+    run(s, c.model, c.p, [&](double error) {
       sum[s.held_out] += error * error;
       ++n[s.held_out];
     });
@@ -504,7 +532,7 @@ class DriveSearch {
     for (double filter_s = 0.002; filter_s <= 0.13 && (better || best_.held_out_rms > kEnoughMm); filter_s *= 2)
       better = search_models(filter_s, true, false);
     // Between the values of the list, to a period.
-    const double period_s = slices_.front().period_s;
+    const double period_s = slices_.front().step_s();
     for (double step_s = best_.model.filter_s / 4; best_.model.filter_s > 0 && step_s > 0.5 * period_s; step_s /= 2) {
       const Model from = best_.model;
       if (!consider({from.free, from.filter_s + step_s, from.lead_s}, best_))
@@ -575,9 +603,15 @@ DriveFit fit_drive(const std::vector<const ServoTrace*>& all, int axis, const Dr
   std::vector<const ServoTrace*> traces;
   for (const ServoTrace* trace : all)
     if (moves(*trace, axis, options.moved_mm)) traces.push_back(trace);
-  const std::vector<Slice> slices = slices_of(traces, axis, options);
+  std::vector<Slice> slices = slices_of(traces, axis, options);
   if (judged_samples(slices, false) < kFewestSamples) return {};
-  const Candidate best = DriveSearch(slices, options).best();
+  Candidate best = DriveSearch(slices, options).best();
+  if (const std::size_t steps = samples_in(slices.front().period_s, options.period_s); steps > 1) {
+    std::vector<Slice> finer = slices;
+    for (Slice& s : finer) fill_between(s, steps);
+    const Candidate other = DriveSearch(finer, options).best();
+    if (other.held_out_rms < best.held_out_rms) best = other, slices = std::move(finer);
+  }
   DriveFit fit = result_of(best);
   if (hides_feed_forward(slices, best)) fit.feed_forward_percent = {0, INFINITY};
   return fit;

@@ -46,6 +46,9 @@ struct DriveFitOptions {
 /// are left out, and the first half second of a stretch of the trace where the axis is not seen to rest before it
 /// moves.
 ///
+/// A trace with fewer samples than the control has periods is fitted twice, the command between two samples straight
+/// and on a cubic through four of them, in steps of the period; what predicts the held-out slices better stands.
+///
 /// Where the trace is explained as well with half of the speed fed forward, since the axis runs steadily all the time,
 /// the feed forward is not determined (infinite error) and the gain is gain / (1 - feed forward).
 ///
