@@ -126,12 +126,14 @@ Machine with_limit_for_each_axis(Machine m) {
   return m;
 }
 
-/// Index of the speed difference where, with a limit for each axis, it is clearly better than `cost`: with one for all
-/// axes another law may come as near to the times.
+/// Index of the speed difference where, with a limit for each axis, it is clearly better than the best law: with one
+/// for all axes another law may come as near to the times.
 std::optional<std::size_t> better_by_axis(const std::vector<TimedLines>& data, const std::vector<TriedLaw>& tried,
-                                          double cost, int max_iterations) {
+                                          std::size_t best, int max_iterations) {
   constexpr double kNear = 3.0;
+  const double cost = tried[best].fit.held_out_cost;
   for (std::size_t i = 0; i < tried.size(); ++i) {
+    if (i == best) continue;
     const LimitFit& fit = tried[i].fit;
     if (fit.whole.control.corner.law != CornerLaw::speed_difference || fit.held_out_cost > kNear * cost) continue;
     const LimitFit by_axis = refit(data, with_limit_for_each_axis(fit.whole), fit, max_iterations);
@@ -211,7 +213,7 @@ std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const Machin
     if (tried[i].fit.whole.control.corner.law == CornerLaw::exact_stop &&
         tried[best].fit.held_out_cost > (1 - kRicherBetterBy) * tried[i].fit.held_out_cost)
       best = i;
-  if (const auto index = better_by_axis(data, tried, tried[best].fit.held_out_cost, max_iterations)) best = *index;
+  if (const auto index = better_by_axis(data, tried, best, max_iterations)) best = *index;
   return tried;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "base/cancel.h"
 #include "feedmodel/drive.h"
@@ -20,8 +21,9 @@ using feedmodel::DriveOptions;
 
 constexpr double kEnoughMm = 0.001;    // a residual under this needs no filter to explain it
 constexpr double kNearlyAsGood = 1.5;  // times the least held-out error
-constexpr double kRestS = 0.3;         // a command that stood for longer: the axis rests
-constexpr double kWarmUpS = 0.5;       // of a slice that begins in motion
+constexpr double kAlmostAsGood = 1.1;
+constexpr double kRestS = 0.3;    // a command that stood for longer: the axis rests
+constexpr double kWarmUpS = 0.5;  // of a slice that begins in motion
 constexpr double kMaxDeadTimeS = 0.04;
 constexpr double kDeterminedFraction = 0.3;
 constexpr double kSamplingFraction = 0.05;  // of the sample distance: what an input between samples may differ by
@@ -96,13 +98,15 @@ DriveOptions options_of(const Model& model, const Numbers& p, double period_s) {
           .period_s = period_s};
 }
 
-/// `use(sample, position)` for each sample of a slice, by the model.
+/// `use(sample, position)` for each sample of a slice, by the model. The load begins where it is seen: the motor may
+/// rest anywhere in the play.
 template <class Use>
 void follow(const Slice& slice, const Model& model, const Numbers& p, const Use& use) {
-  Drive drive(options_of(model, p, slice.step_s()), slice.command.front());
-  double position = 0;
+  DriveOptions options = options_of(model, p, slice.step_s());
+  feedmodel::Backlash load(std::exchange(options.backlash, 0.0), slice.actual.front());
+  Drive drive(options, slice.command.front());
   for (std::size_t i = 0; i < slice.fine.size(); ++i) {
-    position = drive(slice.fine[i]);
+    const double position = load(drive(slice.fine[i]));
     if ((i + 1) % slice.steps == 0) use(i / slice.steps, position);
   }
 }
@@ -520,6 +524,18 @@ DriveFit result_of(const Candidate& c) {
   return fit;
 }
 
+/// An error that is no chance, seen from another.
+double clearly_below(double rms, const DriveFitOptions& options) {
+  return (1.0 - options.better_by) * rms - options.better_by_mm;
+}
+
+/// The model with fewer numbers stands unless the other's error is clearly lower, of two with as many the first.
+bool stands_against(const Candidate& first, const Candidate& second, const DriveFitOptions& options) {
+  if (first.model.count() > second.model.count())
+    return first.held_out_rms < clearly_below(second.held_out_rms, options);
+  return second.held_out_rms > clearly_below(first.held_out_rms, options);
+}
+
 class DriveSearch {
  public:
   DriveSearch(std::vector<Slice> slices, const DriveFitOptions& options)
@@ -551,8 +567,9 @@ class DriveSearch {
   bool search_models(double filter_s, bool plain, bool accelerated) {
     //                            gain  lag    ff    acceleration  dead time
     constexpr Free kModels[] = {{true, false, false, false, false}, {true, true, false, false, false},
-                                {true, false, true, false, false},  {true, true, true, false, false},
-                                {true, true, false, false, true},   {true, true, true, false, true},
+                                {true, false, true, false, false},  {true, false, false, false, true},
+                                {true, true, true, false, false},   {true, true, false, false, true},
+                                {true, false, true, false, true},   {true, true, true, false, true},
                                 {true, true, true, true, false},    {true, true, true, true, true}};
     bool better = false;
     Candidate before = plain ? Candidate() : best_;
@@ -568,11 +585,20 @@ class DriveSearch {
     return better;
   }
 
+  /// Behind the best model, and behind those with no more numbers that come near to it: what a backlash hides may be
+  /// what tells them apart.
   void consider_backlash() {
     if (best_.model.free[backlash] || best_.held_out_rms < 2 * options_.better_by_mm) return;
-    Model model = best_.model;
-    model.free[backlash] = true;
-    consider(model, best_);
+    std::vector<Candidate> near{best_};
+    for (const Candidate& c : tried_)
+      if (c.model.count() <= best_.model.count() && c.model.filter_s == best_.model.filter_s &&
+          c.model.free != best_.model.free && c.held_out_rms < kAlmostAsGood * best_.held_out_rms)
+        near.push_back(c);
+    for (const Candidate& c : near) {
+      Model model = c.model;
+      model.free[backlash] = true;
+      consider(model, c);
+    }
   }
 
   bool consider(const Model& model, const Candidate& before) {
@@ -580,8 +606,7 @@ class DriveSearch {
     const Candidate& c = tried_.back();
     // With as many numbers the better one is taken, with more of them only one that is clearly better.
     const bool richer = model.count() > best_.model.count();
-    const double limit =
-        richer ? (1.0 - options_.better_by) * best_.held_out_rms - options_.better_by_mm : best_.held_out_rms;
+    const double limit = richer ? clearly_below(best_.held_out_rms, options_) : best_.held_out_rms;
     const bool better = !std::isfinite(best_.held_out_rms) || c.held_out_rms < limit;
     if (better) best_ = c;
     return better;
@@ -609,8 +634,9 @@ DriveFit fit_drive(const std::vector<const ServoTrace*>& all, int axis, const Dr
   if (const std::size_t steps = samples_in(slices.front().period_s, options.period_s); steps > 1) {
     std::vector<Slice> finer = slices;
     for (Slice& s : finer) fill_between(s, steps);
-    const Candidate other = DriveSearch(finer, options).best();
-    if (other.held_out_rms < best.held_out_rms) best = other, slices = std::move(finer);
+    Candidate other = DriveSearch(finer, options).best();
+    if (stands_against(other, best, options)) std::swap(best, other), slices = std::move(finer);
+    add_ambiguity(best, {other});
   }
   DriveFit fit = result_of(best);
   if (hides_feed_forward(slices, best)) fit.feed_forward_percent = {0, INFINITY};

@@ -47,7 +47,9 @@ struct DriveFitOptions {
 /// moves.
 ///
 /// A trace with fewer samples than the control has periods is fitted twice, the command between two samples straight
-/// and on a cubic through four of them, in steps of the period; what predicts the held-out slices better stands.
+/// and on a cubic through four of them, in steps of the period; of the two fits the one with fewer numbers stands
+/// unless the other's held-out error is clearly lower, of two with as many that of the cubic; how far they differ
+/// counts as error.
 ///
 /// Where the trace is explained as well with half of the speed fed forward, since the axis runs steadily all the time,
 /// the feed forward is not determined (infinite error) and the gain is gain / (1 - feed forward).
