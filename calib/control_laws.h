@@ -40,8 +40,8 @@ double held_out_percent(const std::vector<TimedLines>& data, const machine::Mach
 
 /// Tries every law; the first is that of `start`. Where blocks overlap, rounding alone, the law that such a control has
 /// for them. Index of the best: the least held-out cost, but the law of `start` unless another is better by a
-/// thousandth, and the exact stop, which has no number, unless another is better by 5 %. only_own: that of `start`
-/// alone.
+/// thousandth, and the exact stop, which has no number, unless another is better by 5 %; the speed difference where it
+/// is better by 5 % with a limit for each axis. only_own: that of `start` alone.
 std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const machine::Machine& start,
                                const TracedAccelerations& acceleration, int max_iterations, std::size_t& best,
                                bool only_own = false);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "base/cancel.h"
 #include "feedmodel/drive.h"
@@ -20,8 +21,9 @@ using feedmodel::DriveOptions;
 
 constexpr double kEnoughMm = 0.001;    // a residual under this needs no filter to explain it
 constexpr double kNearlyAsGood = 1.5;  // times the least held-out error
-constexpr double kRestS = 0.3;         // a command that stood for longer: the axis rests
-constexpr double kWarmUpS = 0.5;       // of a slice that begins in motion
+constexpr double kAlmostAsGood = 1.1;
+constexpr double kRestS = 0.3;    // a command that stood for longer: the axis rests
+constexpr double kWarmUpS = 0.5;  // of a slice that begins in motion
 constexpr double kMaxDeadTimeS = 0.04;
 constexpr double kDeterminedFraction = 0.3;
 constexpr double kSamplingFraction = 0.05;  // of the sample distance: what an input between samples may differ by
@@ -53,7 +55,28 @@ struct Slice {
   bool held_out = false;
   std::size_t warm_up = 0;  // samples that are not judged
   std::vector<double> command, actual;
+  std::size_t steps = 1;     // of the drive from sample to sample
+  std::vector<double> fine;  // so many commands for each sample, the last of them its own
+
+  double step_s() const { return period_s / static_cast<double>(steps); }
 };
+
+/// The command between samples on a cubic through four of them: a log that leaves samples out shows the ramps of a
+/// finer interpolation so, where straight lines would cut them off.
+void fill_between(Slice& slice, std::size_t steps) {
+  const std::vector<double>& c = slice.command;
+  slice.steps = steps;
+  slice.fine.assign(steps, c.front());
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    const double from = c[k - 1], to = c[k], before = k > 1 ? c[k - 2] : 2 * from - to,
+                 after = k + 1 < c.size() ? c[k + 1] : 2 * to - from;
+    for (std::size_t i = 1; i <= steps; ++i) {
+      const double u = static_cast<double>(i) / static_cast<double>(steps), v = 1 - u;
+      slice.fine.push_back(v * from + u * to -
+                           u * v * (v * (before - 2 * from + to) + u * (from - 2 * to + after)) / 2);
+    }
+  }
+}
 
 struct Model {
   Free free{true};
@@ -75,14 +98,25 @@ DriveOptions options_of(const Model& model, const Numbers& p, double period_s) {
           .period_s = period_s};
 }
 
+/// `use(sample, position)` for each sample of a slice, by the model. The load begins where it is seen: the motor may
+/// rest anywhere in the play.
+template <class Use>
+void follow(const Slice& slice, const Model& model, const Numbers& p, const Use& use) {
+  DriveOptions options = options_of(model, p, slice.step_s());
+  feedmodel::Backlash load(std::exchange(options.backlash, 0.0), slice.actual.front());
+  Drive drive(options, slice.command.front());
+  for (std::size_t i = 0; i < slice.fine.size(); ++i) {
+    const double position = load(drive(slice.fine[i]));
+    if ((i + 1) % slice.steps == 0) use(i / slice.steps, position);
+  }
+}
+
 /// `use(error)` for each sample of a slice that is judged.
 template <class Use>
-void run(const Slice& slice, const DriveOptions& options, const Use& use) {
-  Drive drive(options, slice.command.front());
-  for (std::size_t k = 0; k < slice.command.size(); ++k) {
-    const double position = drive(slice.command[k]);
+void run(const Slice& slice, const Model& model, const Numbers& p, const Use& use) {
+  follow(slice, model, p, [&](std::size_t k, double position) {
     if (k >= slice.warm_up) use(position - slice.actual[k]);
-  }
+  });
 }
 
 // --- slices ---------------------------------------------------------------------------------------------------
@@ -141,6 +175,7 @@ void add_slices(const EvenSamples& samples, double slice_s, std::vector<Slice>& 
     const auto at = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
     s.command.assign(samples.command.begin() + at(from), samples.command.begin() + at(end));
     s.actual.assign(samples.actual.begin() + at(from), samples.actual.begin() + at(end));
+    s.fine = s.command;
     out.push_back(std::move(s));
   };
   std::size_t moves_from = 0;
@@ -278,8 +313,7 @@ class DriveResiduals {
     cancellation_point();
     const Numbers p = with_free(parameters[0]);
     for (const Slice& s : slices_)
-      if (!s.held_out)
-        run(s, options_of(model_, p, s.period_s), [&](double error) { *residuals++ = kPositionScale * error; });
+      if (!s.held_out) run(s, model_, p, [&](double error) { *residuals++ = kPositionScale * error; });
     return true;
   }
 
@@ -309,12 +343,29 @@ std::size_t judged_samples(const std::vector<Slice>& slices, bool held_out) {
   return n;
 }
 
+/// Of the axis at every fitted sample, by the model, in the unit of the residuals per second.
+std::vector<double> modelled_speeds(const Candidate& c, const std::vector<Slice>& slices) {
+  std::vector<double> speeds;
+  for (const Slice& s : slices) {
+    if (s.held_out) continue;
+    double before = s.command.front();
+    follow(s, c.model, c.p, [&](std::size_t k, double position) {
+      if (k >= s.warm_up) speeds.push_back(kPositionScale * (position - before) / s.period_s);
+      before = position;
+    });
+  }
+  return speeds;
+}
+
 /// Sandwich over pieces of the slices, with the correction for few of them, and what a shift by a fraction of the
-/// sample distance would do.
+/// sample distance would do: to a number alone, and to all of them together, where some make up for each other.
 void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vector<double>& residuals,
                 const ceres::CRSMatrix& jacobian) {
   const int n = c.model.count();
+  const double shift_s = kSamplingFraction * slices.front().period_s, gain = std::exp(c.p[log_gain]);
+  const std::vector<double> speeds = modelled_speeds(c, slices);
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n), middle = normal;
+  Eigen::VectorXd shifted = Eigen::VectorXd::Zero(n);
   int row = 0, pieces = 0;
   for (const Slice& s : slices) {
     if (s.held_out) continue;
@@ -326,6 +377,7 @@ void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vecto
         const Eigen::Map<const Eigen::VectorXd> j(&jacobian.values[static_cast<std::size_t>(jacobian.rows[row])], n);
         normal += j * j.transpose();
         score += j * residuals[static_cast<std::size_t>(row)];
+        shifted += j * (shift_s * speeds[static_cast<std::size_t>(row)]);
       }
       middle += score * score.transpose();
       ++pieces;
@@ -338,12 +390,12 @@ void set_errors(Candidate& c, const std::vector<Slice>& slices, const std::vecto
   if (!lu.isInvertible()) return;
   const Eigen::MatrixXd inverse = scale.asDiagonal() * lu.inverse() * scale.asDiagonal();
   const Eigen::MatrixXd covariance = inverse * middle * inverse;
-  const double shift_s = kSamplingFraction * slices.front().period_s, gain = std::exp(c.p[log_gain]);
-  const Numbers sampling{shift_s * gain, shift_s / std::exp(c.p[log_lag]), shift_s * gain, shift_s, shift_s, 0};
+  const Eigen::VectorXd together = inverse * shifted;
+  const Numbers alone{shift_s * gain, shift_s / std::exp(c.p[log_lag]), shift_s * gain, shift_s, shift_s, 0};
   int k = 0;
   for (std::size_t i = 0; i < kNumbers; ++i)
     if (c.model.free[i]) {
-      c.error[i] = std::hypot(std::sqrt(std::max(0.0, covariance(k, k))), sampling[i]);
+      c.error[i] = std::hypot(std::sqrt(std::max(0.0, covariance(k, k))), std::max(alone[i], std::abs(together[k])));
       ++k;
     }
 }
@@ -352,7 +404,7 @@ void judge(Candidate& c, const std::vector<Slice>& slices) {
   double sum[2] = {0, 0};
   std::size_t n[2] = {0, 0};
   for (const Slice& s : slices)
-    run(s, options_of(c.model, c.p, s.period_s), [&](double error) {
+    run(s, c.model, c.p, [&](double error) {
       sum[s.held_out] += error * error;
       ++n[s.held_out];
     });
@@ -472,6 +524,18 @@ DriveFit result_of(const Candidate& c) {
   return fit;
 }
 
+/// An error that is no chance, seen from another.
+double clearly_below(double rms, const DriveFitOptions& options) {
+  return (1.0 - options.better_by) * rms - options.better_by_mm;
+}
+
+/// The model with fewer numbers stands unless the other's error is clearly lower, of two with as many the first.
+bool stands_against(const Candidate& first, const Candidate& second, const DriveFitOptions& options) {
+  if (first.model.count() > second.model.count())
+    return first.held_out_rms < clearly_below(second.held_out_rms, options);
+  return second.held_out_rms > clearly_below(first.held_out_rms, options);
+}
+
 class DriveSearch {
  public:
   DriveSearch(std::vector<Slice> slices, const DriveFitOptions& options)
@@ -484,7 +548,7 @@ class DriveSearch {
     for (double filter_s = 0.002; filter_s <= 0.13 && (better || best_.held_out_rms > kEnoughMm); filter_s *= 2)
       better = search_models(filter_s, true, false);
     // Between the values of the list, to a period.
-    const double period_s = slices_.front().period_s;
+    const double period_s = slices_.front().step_s();
     for (double step_s = best_.model.filter_s / 4; best_.model.filter_s > 0 && step_s > 0.5 * period_s; step_s /= 2) {
       const Model from = best_.model;
       if (!consider({from.free, from.filter_s + step_s, from.lead_s}, best_))
@@ -503,8 +567,9 @@ class DriveSearch {
   bool search_models(double filter_s, bool plain, bool accelerated) {
     //                            gain  lag    ff    acceleration  dead time
     constexpr Free kModels[] = {{true, false, false, false, false}, {true, true, false, false, false},
-                                {true, false, true, false, false},  {true, true, true, false, false},
-                                {true, true, false, false, true},   {true, true, true, false, true},
+                                {true, false, true, false, false},  {true, false, false, false, true},
+                                {true, true, true, false, false},   {true, true, false, false, true},
+                                {true, false, true, false, true},   {true, true, true, false, true},
                                 {true, true, true, true, false},    {true, true, true, true, true}};
     bool better = false;
     Candidate before = plain ? Candidate() : best_;
@@ -520,11 +585,20 @@ class DriveSearch {
     return better;
   }
 
+  /// Behind the best model, and behind those with no more numbers that come near to it: what a backlash hides may be
+  /// what tells them apart.
   void consider_backlash() {
     if (best_.model.free[backlash] || best_.held_out_rms < 2 * options_.better_by_mm) return;
-    Model model = best_.model;
-    model.free[backlash] = true;
-    consider(model, best_);
+    std::vector<Candidate> near{best_};
+    for (const Candidate& c : tried_)
+      if (c.model.count() <= best_.model.count() && c.model.filter_s == best_.model.filter_s &&
+          c.model.free != best_.model.free && c.held_out_rms < kAlmostAsGood * best_.held_out_rms)
+        near.push_back(c);
+    for (const Candidate& c : near) {
+      Model model = c.model;
+      model.free[backlash] = true;
+      consider(model, c);
+    }
   }
 
   bool consider(const Model& model, const Candidate& before) {
@@ -532,8 +606,7 @@ class DriveSearch {
     const Candidate& c = tried_.back();
     // With as many numbers the better one is taken, with more of them only one that is clearly better.
     const bool richer = model.count() > best_.model.count();
-    const double limit =
-        richer ? (1.0 - options_.better_by) * best_.held_out_rms - options_.better_by_mm : best_.held_out_rms;
+    const double limit = richer ? clearly_below(best_.held_out_rms, options_) : best_.held_out_rms;
     const bool better = !std::isfinite(best_.held_out_rms) || c.held_out_rms < limit;
     if (better) best_ = c;
     return better;
@@ -555,9 +628,16 @@ DriveFit fit_drive(const std::vector<const ServoTrace*>& all, int axis, const Dr
   std::vector<const ServoTrace*> traces;
   for (const ServoTrace* trace : all)
     if (moves(*trace, axis, options.moved_mm)) traces.push_back(trace);
-  const std::vector<Slice> slices = slices_of(traces, axis, options);
+  std::vector<Slice> slices = slices_of(traces, axis, options);
   if (judged_samples(slices, false) < kFewestSamples) return {};
-  const Candidate best = DriveSearch(slices, options).best();
+  Candidate best = DriveSearch(slices, options).best();
+  if (const std::size_t steps = samples_in(slices.front().period_s, options.period_s); steps > 1) {
+    std::vector<Slice> finer = slices;
+    for (Slice& s : finer) fill_between(s, steps);
+    Candidate other = DriveSearch(finer, options).best();
+    if (stands_against(other, best, options)) std::swap(best, other), slices = std::move(finer);
+    add_ambiguity(best, {other});
+  }
   DriveFit fit = result_of(best);
   if (hides_feed_forward(slices, best)) fit.feed_forward_percent = {0, INFINITY};
   return fit;

@@ -46,12 +46,17 @@ struct DriveFitOptions {
 /// are left out, and the first half second of a stretch of the trace where the axis is not seen to rest before it
 /// moves.
 ///
+/// A trace with fewer samples than the control has periods is fitted twice, the command between two samples straight
+/// and on a cubic through four of them, in steps of the period; of the two fits the one with fewer numbers stands
+/// unless the other's held-out error is clearly lower, of two with as many that of the cubic; how far they differ
+/// counts as error.
+///
 /// Where the trace is explained as well with half of the speed fed forward, since the axis runs steadily all the time,
 /// the feed forward is not determined (infinite error) and the gain is gain / (1 - feed forward).
 ///
 /// Standard errors: sandwich over half seconds (n of them and p numbers: times n / (n - p)); beside it how far the
-/// models differ whose held-out error is less than one and a half times the best and which determine the number, and a
-/// twentieth of the sample distance, for what happens between samples.
+/// models differ whose held-out error is less than one and a half times the best and which determine the number, and
+/// what a shift by a twentieth of the sample distance changes, for what happens between samples.
 DriveFit fit_drive(const std::vector<const ServoTrace*>& traces, int axis, const DriveFitOptions& options);
 
 /// RMS of predicted minus traced position over the traces, mm; of all samples but the first half second of a stretch

@@ -93,6 +93,8 @@ void add_trace(FeedRuns& runs, const std::string& name, nc::Interpretation moves
   std::optional<calib::PlacedTrace> placed;
   if (placeable && (trace.line.empty() || sparse)) {
     placed = calib::place_on_path(trace, moves);
+    // Where it has lines, these tell more exactly what is wrong with it.
+    if (!placed && !trace.line.empty()) calib::check_trace({name, moves, trace}, start, diagnostics);
     if (!placed)
       fail_on_file(
           trace.path,

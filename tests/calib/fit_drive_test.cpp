@@ -14,7 +14,8 @@ namespace {
 
 struct TrueDrive {
   double gain = 30, lag_s = 0, feed_forward = 0, acceleration_s = 0, dead_time_s = 0, backlash = 0;
-  std::size_t average = 1;  ///< of so many commands, before the loop
+  std::size_t average = 1;        ///< of so many commands, before the loop
+  std::size_t command_every = 1;  ///< periods of 1 ms from command to command
 };
 
 /// Ramps, reversals and rests at several speeds.
@@ -37,7 +38,12 @@ std::vector<double> commands(double period_s) {
 
 /// Tv x'' + x' = Kp (c - x) + F c' + Ka c'' in steps of 10 us; the command runs straight between samples.
 ServoTrace followed(const TrueDrive& d, double noise_mm = 0, int every = 1) {
-  const std::vector<double> command = commands(0.001);
+  std::vector<double> command = commands(0.001);
+  for (std::size_t k = 0; k < command.size(); ++k) {
+    const std::size_t first = k - k % d.command_every, next = first + d.command_every;
+    const double u = static_cast<double>(k - first) / static_cast<double>(d.command_every);
+    if (u > 0 && next < command.size()) command[k] = (1 - u) * command[first] + u * command[next];
+  }
   constexpr int kSteps = 100;
   constexpr double h = 0.001 / kSteps;
   const auto delay = static_cast<std::size_t>(std::lround(d.dead_time_s / h));
@@ -122,6 +128,35 @@ TEST(FitDrive, FindsDeadTimeBehindAMovingAverage) {
   expect(d.gain_per_s, 40, 0.03);
   EXPECT_NEAR(d.filter_s.value, 0.064, 0.0011);
   EXPECT_NEAR(d.dead_time_s.value + d.velocity_lag_s.value, 0.014, 0.0006);
+}
+
+/// A dead time is not taken for the lag that it looks like.
+TEST(FitDrive, FindsDeadTimeWithoutLag) {
+  const DriveFit d = fit(followed({.gain = 30, .dead_time_s = 0.0053}));
+  EXPECT_EQ(d.model, "position loop and dead time");
+  expect(d.gain_per_s, 30, 0.003);
+  expect(d.dead_time_s, 0.0053, 0.02);
+  EXPECT_EQ(d.velocity_lag_s.value, 0);
+}
+
+/// A log of every fourth period cuts the ramps off between its samples. Straight lines between them gave feed forward
+/// and lags that the drive does not have.
+TEST(FitDrive, TakesEveryFourthPeriod) {
+  const DriveFit plain = fit(followed({.gain = 72}, 0, 4));
+  EXPECT_EQ(plain.model, "position loop");
+  expect(plain.gain_per_s, 72, 0.01);
+  const DriveFit late = fit(followed({.gain = 72, .dead_time_s = 0.0021}, 0, 4));
+  EXPECT_NEAR(late.gain_per_s.value, 72, 0.02 * 72);
+  EXPECT_NEAR(late.dead_time_s.value + late.velocity_lag_s.value, 0.0021, 0.0002);
+  EXPECT_EQ(late.feed_forward_percent.value, 0);
+}
+
+/// A control that interpolates as seldom as the log has samples: its commands are straight between them.
+TEST(FitDrive, TakesAControlOfALongPeriod) {
+  const DriveFit d = fit(followed({.gain = 40, .lag_s = 0.004, .command_every = 4}, 0, 4));
+  expect(d.gain_per_s, 40, 0.01);
+  expect(d.velocity_lag_s, 0.004, 0.05);
+  EXPECT_LT(d.held_out_rms_mm, 0.0002);
 }
 
 /// A log of every fourth sample, with the noise of an encoder.

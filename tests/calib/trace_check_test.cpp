@@ -112,11 +112,9 @@ TEST(TraceCheck, NamesUnitsOfPositionsAndTimes) {
             "expected [trace-units]");
   FeedRun run = run_of(steps());
   for (double& t : run.trace.t_s) t *= 1000;
-  const std::string milliseconds = said(run);
-  EXPECT_TRUE(
-      milliseconds.ends_with("times the programmed feeds: the time is not in s; seconds were expected "
-                             "[trace-units]"))
-      << milliseconds;
+  EXPECT_EQ(
+      said(run),
+      "held speeds are 0.001 times the programmed feeds: the time is not in s; seconds were expected [trace-units]");
 }
 
 TEST(TraceCheck, NamesAClockThatJumpsButNotMissingSamples) {
@@ -150,16 +148,16 @@ FeedRun at_override(double fraction, std::size_t from, std::size_t end) {
 }
 
 TEST(TraceCheck, NamesOverrides) {
-  const std::string slow = said(at_override(0.8, 0, 1000000));
-  EXPECT_TRUE(
-      slow.starts_with("the axes hold 1200.0 mm/min in line 1 of steps.nc, which is programmed with F1500: an "
-                       "override of 80 %"))
-      << slow;
-  const std::string fast = said(at_override(1.2, 0, 1000000));
-  EXPECT_TRUE(fast.ends_with("an override of 120 %; a trace at 100 % was expected [trace-override]")) << fast;
-  const std::string while_it_ran = said(at_override(0.6, 1250, 1500));
-  EXPECT_TRUE(while_it_ran.ends_with("an override of 60 %; a trace at 100 % was expected [trace-override]"))
-      << while_it_ran;
+  EXPECT_EQ(said(at_override(0.8, 0, 1000000)),
+            "the axes hold 1200.0 mm/min in line 1 of steps.nc, which is programmed with F1500: an override of 80 %; a "
+            "trace at 100 % was expected [trace-override]");
+  EXPECT_EQ(
+      said(at_override(1.2, 0, 1000000)),
+      "the axes hold 1800.0 mm/min in line 1 of steps.nc, which is programmed with F1500: an override of 120 %; a "
+      "trace at 100 % was expected [trace-override]");
+  EXPECT_EQ(said(at_override(0.6, 1250, 1500)),
+            "the axes hold 900.0 mm/min in line 2 of steps.nc, which is programmed with F1500: an override of 60 %; a "
+            "trace at 100 % was expected [trace-override]");
 }
 
 TEST(TraceCheck, NamesAFeedHold) {

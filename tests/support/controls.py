@@ -308,29 +308,27 @@ def averaged(values, window):
 
 
 def followed(machine, axis, values):
-    """The drive in steps of 0.1 ms: Tv x'' + x' = Kp (c - x) + F c', c delayed."""
+    """The drive in steps of 0.1 ms, by the midpoint rule: Tv x'' + x' = Kp (c - x) + F c', c delayed."""
     steps = 10
     h = machine.period / steps
     gain, lag, forward = machine.gain[axis], machine.lag[axis], machine.feed_forward[axis]
     delay = round(machine.dead_time[axis] / h)
-    x = last = values[0]
-    v = 0.0
-    history = [values[0]] * (delay + 1)
-    at = 0
+    command = [values[0]] * (delay + 1)
+    for a, b in zip([values[0]] + values, values):
+        command.extend(a + (b - a) * i / steps for i in range(1, steps + 1))
+    x, v = values[0], 0.0
     out = []
-    previous = values[0]
-    for value in values:
-        for i in range(1, steps + 1):
-            command = previous + (value - previous) * i / steps
-            history[at] = command
-            at = (at + 1) % len(history)
-            command = history[at]
-            wanted = gain * (command - x) + forward * (command - last) / h
-            last = command
-            v = v + (wanted - v) * (1 - math.exp(-h / lag)) if lag > 0 else wanted
-            x += h * v
-        previous = value
-        out.append(x)
+    for k in range(len(values) * steps):
+        c, slope = command[k], forward * (command[k + 1] - command[k]) / h
+        middle = (c + command[k + 1]) / 2
+        if lag > 0:
+            v_middle = v + h / 2 * (gain * (c - x) + slope - v) / lag
+            v += h * (gain * (middle - x - h / 2 * v) + slope - v_middle) / lag
+            x += h * v_middle
+        else:
+            x += h * (gain * (middle - x - h / 2 * (gain * (c - x) + slope)) + slope)
+        if k % steps == steps - 1:
+            out.append(x)
     return out
 
 
