@@ -12,7 +12,9 @@
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
+#include "kinematics/rotary_options.h"
 #include "machine/assumptions.h"
+#include "machine/machine.h"
 #include "machine/machine_presets.h"
 #include "machine/material_presets.h"
 #include "nc/program.h"
@@ -72,6 +74,42 @@ CLI::Validator material_name() {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* kFiveAxisPreset = "preset:five-axis-trunnion";
+
+/// As the machine reads it that the arguments name: words of rotary axes where it has some.
+nc::InterpreterOptions interpreter_of(const std::string& machine_path, nc::InterpreterOptions options) {
+  if (machine_path.empty()) return options;
+  Diagnostics of_machine;
+  options.rotary_axes = kinematics::rotary_options(machine::read_machine(machine_path, of_machine));
+  constexpr int kG54 = 54;
+  if (machine::is_preset(machine_path)) options.work_offsets_mm.try_emplace(kG54, Vec3::Zero());
+  return options;
+}
+
+bool turns_the_tool(const nc::Summary& summary) { return summary.rotary > 0 || summary.tilted_frame > 0; }
+
+/// The moves; where no machine is named and the program turns rotary axes, those of a machine that has some.
+nc::Interpretation read_moves(const InitArguments& arguments, const nc::Program& text, Diagnostics& diagnostics) {
+  Diagnostics upright = diagnostics;
+  nc::Interpretation moves = nc::interpret(text, interpreter_of(arguments.machine, arguments.interpreter), upright);
+  const bool turns = std::ranges::any_of(
+      upright.all(), [](const Diagnostic& d) { return d.check == "rotary-axis" || d.check == "tilted-plane"; });
+  if (turns && arguments.machine.empty()) {
+    Diagnostics tilted = diagnostics;
+    nc::Interpretation with_axes = nc::interpret(text, interpreter_of(kFiveAxisPreset, arguments.interpreter), tilted);
+    if (!tilted.has_errors() && turns_the_tool(nc::summarize(text, with_axes))) {
+      diagnostics = std::move(tilted);
+      return with_axes;
+    }
+  }
+  diagnostics = std::move(upright);
+  return moves;
+}
+
+}  // namespace
+
 int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   std::error_code ec;
   if (fs::exists(arguments.output, ec))
@@ -79,7 +117,7 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   if (arguments.program.empty()) return write_machine(arguments, options);
   Diagnostics diagnostics;
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
-  const nc::Interpretation moves = nc::interpret(text, arguments.interpreter, diagnostics);
+  const nc::Interpretation moves = read_moves(arguments, text, diagnostics);
   const nc::Summary summary = nc::summarize(text, moves);
   const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
   settle(diagnostics, options);

@@ -11,6 +11,7 @@
 #include "kinematics/machine_moves.h"
 #include "kinematics/program_joints.h"
 #include "kinematics/rotary_options.h"
+#include "machine/machine_presets.h"
 #include "simulate/moves_of_axes.h"
 
 namespace camber::simulate {
@@ -65,17 +66,35 @@ class Reading {
 
 }  // namespace
 
+namespace {
+
+/// On a machine of a class: the part's zero lies at the machine's, and a tool is as long as it and its holder stand
+/// out.
+void assume_clamping(const machine::Job& job, nc::InterpreterOptions& options) {
+  constexpr int kG54 = 54;
+  options.work_offsets_mm[kG54] = Vec3::Zero();
+  for (const auto& [number, tool] : job.tools) {
+    double length_mm = tool.overhang_mm;
+    for (const machine::HolderPart& part : tool.holder) length_mm += part.length_mm;
+    options.tool_offsets[number].length_mm = length_mm;
+  }
+}
+
+}  // namespace
+
 nc::InterpreterOptions interpreter_options(const machine::Job& job, bool rotary_axes) {
   constexpr int kG54 = 54;
   nc::InterpreterOptions options = feedmodel::interpreter_options(job.machine, job.inch);
   if (!rotary_axes) return options;
   options.rotary_axes = kinematics::rotary_options(job.machine);
+  if (machine::is_preset(job.machine.path)) assume_clamping(job, options);
   if (job.compensation.work_offset_mm) options.work_offsets_mm[kG54] = *job.compensation.work_offset_mm;
   return options;
 }
 
 bool names_rotary_axes(const machine::Machine& machine, const nc::Program& text) {
   if (!machine.kinematics.given()) return false;
+  if (text.language != nc::LanguageId::iso) return true;  // planes and directions have words of their own there
   const int tip_control_m = feedmodel::dialect_of(machine.control.kind).tip_control_on_m;
   return std::ranges::any_of(text.words, [&](const nc::Word& word) {
     // NaN, an expression, is not 0.

@@ -33,11 +33,13 @@ class RotaryMotion {
 };
 
 /// As the control of the job's machine reads the program. With `rotary_axes`, words of the axes of its chain are read;
-/// the work offset G54 is that of [compensation] work_offset_mm, unless the program sets it (G10 L2).
+/// the work offset G54 is that of [compensation] work_offset_mm, unless the program sets it (G10 L2). On a preset it is
+/// zero where the job has none, and the length of a tool its overhang and its holder's, unless the program sets it.
 nc::InterpreterOptions interpreter_options(const machine::Job& job, bool rotary_axes);
 
 /// True where the text has words other than 0 of rotary axes, tool-centre-point control or frames that turn with them,
-/// and the machine a chain. Other programs are read as those of a machine without rotary axes.
+/// and the machine a chain; true of all programs in Klartext or for a Sinumerik there. Other programs are read as those
+/// of a machine without rotary axes.
 bool names_rotary_axes(const machine::Machine& machine, const nc::Program& text);
 
 /// Nothing without rotary motion. Errors at the program's blocks:

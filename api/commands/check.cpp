@@ -11,10 +11,12 @@
 #include "kinematics/reference_check.h"
 #include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
+#include "machine/machine_presets.h"
 #include "nc/language.h"
 #include "simulate/machine_checks.h"
 #include "simulate/machine_collisions.h"
 #include "simulate/pieces.h"
+#include "simulate/rotary_motion.h"
 #include "simulate/setup_checks.h"
 #include "simulate/thin_walls.h"
 
@@ -26,6 +28,11 @@ nc::InterpreterOptions options_of(nc::InterpreterOptions options, const machine:
   if (job && !options.inch) options.inch = job->inch;
   if (!machine) return options;
   options.rotary_axes = kinematics::rotary_options(*machine);
+  if (job && machine::is_preset(machine->path)) {  // as the commands that cut read it; what is given counts before
+    const nc::InterpreterOptions assumed = simulate::interpreter_options(*job, true);
+    options.work_offsets_mm.insert(assumed.work_offsets_mm.begin(), assumed.work_offsets_mm.end());
+    options.tool_offsets.insert(assumed.tool_offsets.begin(), assumed.tool_offsets.end());
+  }
   return feedmodel::interpreter_options(*machine, options);
 }
 

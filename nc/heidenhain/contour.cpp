@@ -100,7 +100,7 @@ Vec3 Klartext::tangent_point(const Vec3& centre, double radius, double sense, co
 }
 
 /// APPR: the way is made when the next block says which direction the contour has at its start.
-void Klartext::start_approach(const Statement& s, const BlockValues& b) {
+void Klartext::start_approach(const Statement& s, const BlockValues& b, std::optional<double> feed_before) {
   bool polar = false;
   const auto form = read_form(s, polar);
   if (!form) return;
@@ -114,6 +114,11 @@ void Klartext::start_approach(const Statement& s, const BlockValues& b) {
   a.start_mm = polar ? polar_target(b) : target(b);
   a.rapid = b.rapid;
   a.feed_mm_per_s = b.rapid ? 0 : cutting_feed("APPR");
+  // The way to PH: LCT at the feed of the block, the others as the block before it went (APPR in the manuals).
+  const bool as_before =
+      *form != Form::line_and_arc && !out_.moves.empty() && !b.rapid && state_.feed_mode != FeedMode::per_revolution;
+  a.rapid_there = b.rapid || (as_before && positioned_at_rapid());
+  a.feed_there_mm_per_s = as_before && !a.rapid_there && feed_before ? *feed_before : a.feed_mm_per_s;
   a.offset = s.begin;
   a.block = block_;
   const bool line = *form == Form::tangent_line || *form == Form::normal_line;
@@ -130,6 +135,13 @@ void Klartext::start_approach(const Statement& s, const BlockValues& b) {
   approach_ = a;
   position_mm_ = end_in_moves(a.start_mm, 7);
   settle(7);
+}
+
+/// Whether the last block that moved went at FMAX.
+bool Klartext::positioned_at_rapid() const {
+  for (std::size_t i = out_.moves.size(); i-- > 0;)
+    if (out_.moves[i].kind != MoveKind::dwell) return out_.moves[i].kind == MoveKind::rapid;
+  return false;
 }
 
 /// `contour`: the first move of the contour.
@@ -153,8 +165,9 @@ void Klartext::finish_approach(std::size_t contour) {
     move.editable = move.feed_given = false;
     move.start_mm = way.empty() ? frame_.from_program(a.from_mm) : way.back().end_mm;
     move.end_mm = frame_.from_program(to);
-    move.feed_mm_per_s = a.feed_mm_per_s;
-    move.kind = arc ? MoveKind::arc : a.rapid ? MoveKind::rapid : MoveKind::linear;
+    const bool rapid = way.empty() ? a.rapid_there : a.rapid;
+    move.feed_mm_per_s = rapid ? 0 : way.empty() ? a.feed_there_mm_per_s : a.feed_mm_per_s;
+    move.kind = arc ? MoveKind::arc : rapid ? MoveKind::rapid : MoveKind::linear;
     move.arc = Move::kNoArc;
     if (arc) {
       out_.arcs.push_back(frame_.plain ? *arc : from_program(frame_, *arc).value_or(*arc));

@@ -225,6 +225,12 @@ void Klartext::call_label(const Statement& s) {
     const auto [left, is_new] = repeats_left_.emplace(std::pair(&tree(), index), static_cast<int>(std::lround(count)));
     if (left->second > 0) {
       --left->second;
+      if (const auto found = tree().labels.find(label); found != tree().labels.end() && found->second > index)
+        warn(s.begin, "label",
+             fmt::format("LBL {} stands behind its CALL LBL REP: the program goes on there, and the blocks between are "
+                         "left out; a label before it, or CALL LBL without REP, was expected",
+                         label),
+             label);
       jump(label, s.begin);
     } else {
       repeats_left_.erase(left);
@@ -383,6 +389,25 @@ void Klartext::assign(const Statement& s) {
   }
 }
 
+/// Q1 IS DEFINED, QS2 IS UNDEFINED: whether it holds. Nothing, and no move, where another condition stands there.
+std::optional<bool> Klartext::definition_asked(Cursor& at) const {
+  Cursor ahead = at;
+  const auto name = read_parameter(ahead);
+  if (!name || !ahead.accept("IS")) return std::nullopt;
+  const bool defined = ahead.accept("DEFINED");
+  if (!defined && !ahead.accept("UNDEFINED"))
+    throw FormulaError(ahead.offset(), "function", "IS without DEFINED or UNDEFINED");
+  at = ahead;
+  return parameters_.is_defined(*name) == defined;
+}
+
+/// GOTO LBL 5
+void Klartext::jump_behind_goto(Cursor& at, const Statement& s) {
+  if (!at.accept("GOTO")) throw FormulaError(s.begin, "function", "IF without GOTO LBL");
+  at.accept("LBL");
+  jump(label_name(at), s.begin);
+}
+
 /// FN 0 to FN 38.
 void Klartext::run_function(const Statement& s) {
   Cursor at = cursor(s);
@@ -437,14 +462,20 @@ void Klartext::run_function(const Statement& s) {
   }
   if (*number >= 9 && *number <= 12) {
     at.accept("IF");
+    if (const auto asked = definition_asked(at)) {
+      if (*asked) jump_behind_goto(at, s);
+      return;
+    }
+    const bool texts = is_text(at);
+    const std::string first_text = texts ? read_text_formula(at, parameters_) : std::string();
     const std::size_t begin = at.offset();
-    const double a = known(read_formula(at, parameters_), begin);
+    const double a = texts ? 0 : known(read_formula(at, parameters_), begin);
     std::string relation = at.letters();
-    if (relation == "IS")
-      throw FormulaError(begin, "not-supported", "IS DEFINED is not supported; a comparison was expected");
     at.advance(relation.size());
     const std::size_t second = at.offset();
-    const double b = known(read_formula(at, parameters_), second);
+    // Of texts the order counts: 0 where they are the same.
+    const double b = texts ? -static_cast<double>(first_text.compare(read_text_formula(at, parameters_)))
+                           : known(read_formula(at, parameters_), second);
     if (!at.accept("GOTO")) throw FormulaError(s.begin, "function", "IF without GOTO LBL");
     at.accept("LBL");
     const std::string label = label_name(at);

@@ -99,6 +99,8 @@ class Klartext {
     double side = 1;                                       ///< 1: on the left of the contour
     double feed_mm_per_s = 0;
     bool rapid = false;
+    double feed_there_mm_per_s = 0;  ///< to the auxiliary point PH
+    bool rapid_there = false;
     std::size_t move = 0, offset = 0;
     std::uint32_t block = 0;
   };
@@ -122,6 +124,8 @@ class Klartext {
   void end_program();
   void assign(const Statement& s);
   void run_function(const Statement& s);
+  std::optional<bool> definition_asked(Cursor& at) const;
+  void jump_behind_goto(Cursor& at, const Statement& s);
   std::string label_name(Cursor& at);
   double known(double value, std::size_t offset);
   const Program& file() const { return *level().file; }
@@ -183,7 +187,8 @@ class Klartext {
   // contour.cpp
   void set_corner(const Statement& s, const BlockValues& b);
   void after_contour_move(std::size_t first);
-  void start_approach(const Statement& s, const BlockValues& b);
+  void start_approach(const Statement& s, const BlockValues& b, std::optional<double> feed_before);
+  bool positioned_at_rapid() const;
   void finish_approach(std::size_t contour);
   void depart(const Statement& s, const BlockValues& b);
   std::optional<Form> read_form(const Statement& s, bool& polar);
@@ -283,6 +288,7 @@ class Klartext {
 
   WorkOffsets offsets_;
   Transform base_, in_plane_;
+  bool tilted() const { return tilt_ && !tilt_->isIdentity(1e-12); }
   std::optional<Eigen::Matrix3d> tilt_;
   Frame frame_;
   int preset_ = -1;

@@ -1,5 +1,6 @@
 #include "nc/heidenhain/parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -41,6 +42,12 @@ void Parameters::set(const ParameterName& name, double value) {
     unknown_[name] = why_;
   else if (!unknown_.empty())
     unknown_.erase(name);
+}
+
+bool Parameters::is_defined(const ParameterName& name) const {
+  if (name.kind == 'S') return texts_.contains(name.number);
+  const auto& values = name.kind == 'L' ? local_.back() : name.kind == 'R' ? r_ : q_;
+  return values.contains(name.number) || (name.kind == 'Q' && system && system(name.number));
 }
 
 void Parameters::set_unknown(const ParameterName& name, std::string why) {
@@ -86,6 +93,31 @@ double read_value(Cursor& at, Parameters& parameters) {
 }
 
 namespace {
+
+/// SRC_QS1, SEA_QS2: `function` says whose argument it is.
+const std::string& marked_text(Cursor& at, const Parameters& parameters, const char* mark, const char* function,
+                               std::size_t begin) {
+  const bool marked = at.accept_prefix(mark);
+  const auto name = marked ? read_parameter(at) : std::nullopt;
+  if (!name || name->kind != 'S')
+    throw FormulaError(begin, "expression", fmt::format("{0} without {1}; {1}QS1 was expected", function, mark));
+  return parameters.text(name->number);
+}
+
+/// A place or a length that a text has room for.
+std::size_t place_in(const std::string& text, double value) {
+  return static_cast<std::size_t>(std::clamp(value, 0.0, static_cast<double>(text.size())));
+}
+
+/// SUBSTR (SRC_QS1 BEG2 LEN4): the place counts from 0.
+std::string part_of_text(Cursor& at, Parameters& parameters, std::size_t begin) {
+  at.accept('(');
+  const std::string& text = marked_text(at, parameters, "SRC_", "SUBSTR", begin);
+  const std::size_t from = at.accept_prefix("BEG") ? place_in(text, read_value(at, parameters)) : 0;
+  const std::size_t length = at.accept_prefix("LEN") ? place_in(text, read_value(at, parameters)) : text.size();
+  at.accept(')');
+  return text.substr(from, length);
+}
 
 class Formula {
  public:
@@ -180,7 +212,11 @@ class Formula {
   }
 
   double function(std::size_t begin) {
-    const std::string name = at_.letters();
+    std::string name = at_.letters();
+    // SINQ20: the parameter begins without a blank.
+    if (const std::size_t q = name.find_last_of('Q');
+        q != std::string::npos && q > 0 && name.size() - q <= 2 && name != "SQ" && is_digit(at_.behind(name.size())))
+      name.erase(q);
     if (name.empty())
       throw FormulaError(begin, "expression",
                          fmt::format("{} in a formula; a number, a parameter or a function was expected",
@@ -189,6 +225,8 @@ class Formula {
     if (name == "PI") return kPi;
     if (name == "TONUMB") return tonumb(begin);
     if (name == "STRLEN") return strlen(begin);
+    if (name == "STRCOMP") return strcomp(begin);
+    if (name == "INSTR") return instr(begin);
     const double x = signed_argument(begin, name);
     if (name == "SQ") return x * x;
     if (name == "SQRT") {
@@ -234,12 +272,28 @@ class Formula {
 
   double tonumb(std::size_t begin) {
     at_.accept('(');
-    if (!at_.accept_prefix("SRC_"))
-      throw FormulaError(begin, "expression", "TONUMB without SRC_; SRC_QS1 was expected");
-    const auto name = read_parameter(at_);
-    if (!name || name->kind != 'S') throw FormulaError(begin, "expression", "TONUMB without a QS parameter");
+    const std::string& text = marked_text(at_, parameters_, "SRC_", "TONUMB", begin);
     at_.accept(')');
-    return to_number(parameters_.text(name->number), begin);
+    return to_number(text, begin);
+  }
+
+  /// 0: the same; -1: the first one stands before the second in the alphabet.
+  double strcomp(std::size_t begin) {
+    at_.accept('(');
+    const std::string& first = marked_text(at_, parameters_, "SRC_", "STRCOMP", begin);
+    const std::string& second = marked_text(at_, parameters_, "SEA_", "STRCOMP", begin);
+    at_.accept(')');
+    return first == second ? 0 : first < second ? -1 : 1;
+  }
+
+  /// The place of the second text in the first, from 0; the length of the first where it is not in there.
+  double instr(std::size_t begin) {
+    at_.accept('(');
+    const std::string& text = marked_text(at_, parameters_, "SRC_", "INSTR", begin);
+    const std::string& wanted = marked_text(at_, parameters_, "SEA_", "INSTR", begin);
+    const std::size_t from = at_.accept_prefix("BEG") ? place_in(text, read_value(at_, parameters_)) : 0;
+    at_.accept(')');
+    return static_cast<double>(std::min(text.find(wanted, from), text.size()));
   }
 
   double strlen(std::size_t begin) {
@@ -260,6 +314,8 @@ class Formula {
 
 double read_formula(Cursor& at, Parameters& parameters) { return Formula(at, parameters).sum(); }
 
+bool is_text(Cursor& at) { return at.peek() == '"' || (at.peek() == 'Q' && at.behind(1) == 'S'); }
+
 std::string read_text_formula(Cursor& at, Parameters& parameters) {
   std::string out;
   for (;;) {
@@ -270,6 +326,8 @@ std::string read_text_formula(Cursor& at, Parameters& parameters) {
       const auto name = read_parameter(at);
       if (!name) throw FormulaError(begin, "expression", "a text in quotes or a QS parameter was expected");
       out += name->kind == 'S' ? parameters.text(name->number) : fmt::format("{}", parameters.value(*name, begin));
+    } else if (at.accept("SUBSTR")) {
+      out += part_of_text(at, parameters, begin);
     } else if (at.accept("TOCHAR")) {
       at.accept('(');
       if (!at.accept_prefix("DAT")) throw FormulaError(begin, "expression", "TOCHAR without DAT; DAT+Q1 was expected");
@@ -280,8 +338,8 @@ std::string read_text_formula(Cursor& at, Parameters& parameters) {
       out += fmt::format("{:.{}f}", value, std::min(decimals, 15));
     } else {
       throw FormulaError(begin, "not-supported",
-                         fmt::format("{} in a text formula is not supported; texts in quotes, QS parameters, || and "
-                                     "TOCHAR were expected",
+                         fmt::format("{} in a text formula is not supported; texts in quotes, QS parameters, ||, "
+                                     "SUBSTR and TOCHAR were expected",
                                      at.more() ? at.word() : std::string("nothing")));
     }
     if (!(at.peek() == '|' && at.behind(1) == '|')) return out;

@@ -37,6 +37,7 @@ class Parameters {
   void set(const ParameterName& name, double value);
   /// Marks a value that only the machine knows: `why` is said where a move depends on it.
   void set_unknown(const ParameterName& name, std::string why);
+  bool is_defined(const ParameterName& name) const;
   const std::string& text(int number) const;
   void set_text(int number, std::string value) { texts_[number] = std::move(value); }
 
@@ -65,7 +66,10 @@ double read_value(Cursor& at, Parameters& parameters);
 /// A formula: numbers, parameters, + - * / % ^, brackets, functions with or without brackets. Angles in degrees.
 double read_formula(Cursor& at, Parameters& parameters);
 
-/// A text: "..." and QS parameters joined by ||.
+/// Whether a text stands at the cursor: "..." or a QS parameter.
+bool is_text(Cursor& at);
+
+/// A text: "..." and QS parameters joined by ||, TOCHAR, SUBSTR.
 std::string read_text_formula(Cursor& at, Parameters& parameters);
 
 }  // namespace camber::nc::heidenhain

@@ -39,10 +39,11 @@ void Klartext::run_path(const Statement& s) {
   if (b.by_parameter) editable_ = false;
   if (s.kind == Kind::centre) return set_centre(b);
   if (s.kind == Kind::rounding || s.kind == Kind::chamfer) return set_corner(s, b);
+  const std::optional<double> feed_before = feed_;
   set_feed(b);
   functions_before(b);
   if (s.kind == Kind::approach) {
-    start_approach(s, b);
+    start_approach(s, b, feed_before);
     return functions_after(b);
   }
   const std::size_t first = out_.moves.size();
@@ -356,7 +357,8 @@ void Klartext::retract(const BlockValues::Function& f) {
 /// The rotary words of a block that moves.
 void Klartext::add_rotary(const BlockValues& b, std::size_t move) {
   if (options_.rotary_axes.empty()) {
-    const bool at_zero = std::ranges::all_of(b.rotary, [](const auto& v) { return !v || *v == 0; }) && b.to_plane == 0;
+    const bool at_zero =
+        std::ranges::all_of(b.rotary, [](const auto& v) { return !v || *v == 0; }) && (b.to_plane == 0 || !tilted());
     if (!at_zero)
       warn(
           statement_->begin, "rotary-axis",
@@ -417,6 +419,8 @@ void Klartext::turn_only(const BlockValues& b) {
 /// The rotary axes put the tool along a direction in the frame of the moves.
 void Klartext::direction_target(const Vec3& direction, std::size_t move) {
   if (options_.rotary_axes.empty()) {
+    constexpr double kUpright = 1 - 1e-9;
+    if (!tilted() && direction.z() > kUpright) return;
     warn(
         statement_->begin, "rotary-axis",
         "the tool is tilted here; without a machine file with [kinematics] X, Y and Z are read as they are programmed, "

@@ -52,6 +52,7 @@ class BlockRunner : public SystemValues {
   void begin(const BlockPlace& place);
   void add_plain(std::span<const Word> words);
   BlockWords& words() { return words_; }
+  bool goes_to_fixed_point() const;
   void set_command(const WordRow& row, std::uint32_t offset);
   void set_tool_name(const std::string& name, std::uint32_t offset);
   /// Carries the block out. Returns false at the end of the program (M2, M30); `ends_subprogram`: M17 was in it.

@@ -345,6 +345,7 @@ void LineParser::parse_letter() {
     return;
   }
   item.name = names_.index(std::string(1, letter));
+  if (names_.is_declared(letter) && (peek() == '[' || (sets && digits == at_))) return parse_assignment(item);
   if (peek() == '[') {  // G[1]=3, S[2]=500
     ++at_;
     item.index = parse_expression();
@@ -536,6 +537,8 @@ void LineParser::parse_for(std::size_t begin) {
     item.offset = static_cast<std::uint32_t>(at_);
     item.name = names_.index(read_name());
     parse_assignment(item);
+  } else if (names_.is_declared(upper(peek()))) {
+    parse_letter();
   }
   if (out_.items.size() == before || out_.items.back().kind != ItemKind::assign)
     fail(begin, "syntax", "FOR has no variable; FOR name = first TO last was expected");
@@ -596,9 +599,13 @@ Declared LineParser::parse_declared(ValueType type, bool parameter) {
   if (!in_name(peek()) || is_digit(peek()))
     fail(at_, "syntax", fmt::format("{} in a declaration; a name was expected", quoted(at_)));
   const std::string name_text = read_name();
-  if (name_text.size() == 1)
-    fail(out.offset, "variable",
-         fmt::format("{} is an address; a name of two letters or more was expected", name_text));
+  if (name_text.size() == 1) {
+    constexpr std::string_view kFixedAddresses = "DFGHLMNRSTXYZ";
+    if (kFixedAddresses.find(name_text[0]) != std::string_view::npos)
+      fail(out.offset, "variable",
+           fmt::format("{} is an address; a name of two letters or more was expected", name_text));
+    names_.declare(name_text[0]);
+  }
   out.name = names_.index(name_text);
   if (take('[')) {
     do {
@@ -645,6 +652,7 @@ void LineParser::parse_definition(std::size_t begin) {
 
 void LineParser::parse_procedure(std::size_t begin) {
   set_flow(FlowKind::procedure, begin);
+  names_.forget_letters();
   skip_blanks();
   if (!in_name(peek())) fail(at_, "syntax", "PROC has no name");
   out_.name = names_.index(read_name());

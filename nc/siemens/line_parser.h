@@ -23,8 +23,14 @@ class NameTable {
   explicit NameTable(Tree& tree) : tree_(tree) {}
   std::uint32_t index(std::string upper_name);
 
+  /// Letters that the program declares as variables (DEF INT I); they are addresses before a number all the same.
+  void declare(char letter) { letters_ += letter; }
+  void forget_letters() { letters_.clear(); }
+  bool is_declared(char upper_letter) const { return letters_.find(upper_letter) != std::string::npos; }
+
  private:
   Tree& tree_;
+  std::string letters_;
   std::unordered_map<std::string, std::uint32_t> known_;
 };
 

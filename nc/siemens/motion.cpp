@@ -313,6 +313,11 @@ void BlockRunner::go_in_machine_frame() {
   move.feed_mm_per_s = feed.value_or(0);
 }
 
+/// G74 or G75 stands in the block, before the word that asks.
+bool BlockRunner::goes_to_fixed_point() const {
+  return std::ranges::any_of(words_.g, [](const CodeWord& c) { return c.number == 74 || c.number == 75; });
+}
+
 /// G74: reference point; G75: a fixed point of the machine. Where they are is not known here.
 void BlockRunner::go_to_fixed_point() {
   Vec3 end = position_mm_, machine_mm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -22,8 +22,10 @@ void BlockRunner::check_rotary_letter(char letter) {
   if (options_.rotary_axes.empty()) {
     if (slot.value != 0)
       error(slot.offset, "rotary-axis",
-            fmt::format("rotary axis {} is read on a machine with [kinematics], by camber {}; X, Y and Z were expected",
-                        letter, kReadersOfRotaryAxes),
+            fmt::format(
+                "rotary axis {} is read on a machine with [kinematics] (preset:five-axis-trunnion has A and C), by "
+                "camber {}; X, Y and Z were expected",
+                letter, kReadersOfRotaryAxes),
             std::string(1, letter));
     else
       report_.warning(slot.offset, "rotary-axis",
@@ -64,11 +66,12 @@ void BlockRunner::read_rotary_words() {
     if (!directed) return;
     const Vec3 direction(words_.of(Extra::a3).value, words_.of(Extra::b3).value, words_.of(Extra::c3).value);
     if (direction.x() != 0 || direction.y() != 0 || direction.z() <= 0)
-      error(words_.offset(), "rotary-axis",
-            fmt::format("A3 B3 C3 (tool direction) are read on a machine with [kinematics], by camber {}; a tool along "
-                        "Z was expected",
-                        kReadersOfRotaryAxes),
-            "A3");
+      error(
+          words_.offset(), "rotary-axis",
+          fmt::format("A3 B3 C3 (tool direction) are read on a machine with [kinematics] (preset:five-axis-trunnion is "
+                      "one), by camber {}; a tool along Z was expected",
+                      kReadersOfRotaryAxes),
+          "A3");
     return;
   }
   if (request_.frame || request_.dwell || request_.limits) return;

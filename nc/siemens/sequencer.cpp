@@ -39,6 +39,9 @@ void Sequencer::run() {
       step();
     } catch (const RunError& e) {
       report_.error(e.offset, e.check, e.what());
+      // A loop whose condition cannot be read would go on to the limit of repeated blocks.
+      constexpr int kMaxErrors = 1000;
+      if (++run_errors_ >= kMaxErrors) running_ = false;
     }
   }
   report_.set_source(main_.source);
@@ -464,6 +467,11 @@ void Sequencer::run_word(const Item& item) {
   if (item.row) return run_command_word(item);
   if (name.size() > 1) {
     const double value = word_value(item, name);
+    // G74 X1=0, G75 FP=2 Y1=0: axes of the machine by their names.
+    if (name.size() == 2 && name[1] == '1' && name[0] >= 'X' && name[0] <= 'Z' && runner_.goes_to_fixed_point()) {
+      runner_.words().set(name[0]) = {true, !item.constant, item.dimension, value, item.offset};
+      return;
+    }
     report_.error(
         item.offset, "axis",
         fmt::format("{}={:g}: {} is not an axis that Camber knows; X, Y, Z, A, B or C was expected", name, value, name),

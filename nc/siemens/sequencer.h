@@ -89,6 +89,7 @@ class Sequencer {
   ProgramFiles files_;
   std::vector<Frame> frames_;
   std::optional<ModalCall> modal_;
+  int run_errors_ = 0;
   bool running_ = true;
   bool ended_ = false;
   std::uint32_t block_ = 0;         ///< the one at hand

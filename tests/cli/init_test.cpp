@@ -271,5 +271,26 @@ TEST(Init, NamesPathsAsTheJobSeesThem) {
   EXPECT_NE(tests::file_text(folder / "jobs/job.toml").find("program = \"../p.nc\"\n"), std::string::npos);
 }
 
+/// TRAORI with A and C: a class of machines that has them, with which the job is read as it stands.
+TEST(Init, TakesAFiveAxisMachineForAProgramThatTurnsItsAxes) {
+  const TempFolder folder;
+  folder.write("tip.mpf",
+               "G710 G17 G90 G54\nT1 M6 D1 ; D=6 CR=3 BALL\nS5000 M3 F1000\nTRAORI\nG0 X0 Y0 Z50 A0 C0\nG1 Z0\n"
+               "X10 A10 C20\nX20 Y5\nTRAFOOF\nM30\n");
+  folder.write("upright.mpf",
+               "G710 G17 G90 G54\nT1 M6 D1\nS5000 M3 F1000\nTRAORI\nG0 X0 Y0 Z50 A0 C0\nG1 Z0\nX10\nTRAFOOF\nM30\n");
+  const auto machine_of = [&](const std::string& name) {
+    const auto run = run_camber(folder, "-q init " + name + ".mpf -o " + name + ".toml");
+    EXPECT_EQ(run.status, 0) << run.err;
+    const std::string job = tests::file_text(folder / (name + ".toml"));
+    const std::size_t at = job.find("machine = \"");
+    return at == std::string::npos ? job : job.substr(at + 11, job.find('"', at + 11) - at - 11);
+  };
+  EXPECT_EQ(machine_of("tip"), "preset:five-axis-trunnion");
+  EXPECT_EQ(machine_of("upright"), "preset:vmc-40");
+  const auto check = run_camber(folder, "check --job tip.toml");
+  EXPECT_EQ(check.status, 0) << check.err;
+}
+
 }  // namespace
 }  // namespace camber

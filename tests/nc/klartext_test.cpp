@@ -155,6 +155,71 @@ TEST(Klartext, WaysToAContourAndBack) {
   EXPECT_NEAR((r.moves.arcs.at(0).center_mm - Vec3(20, 15, 0)).norm(), 0, 1e-9);
 }
 
+/// To PH as the block before went, except with LCT; from there at the feed of the block.
+TEST(Klartext, TheWayToPhGoesAsTheBlockBefore) {
+  const auto speeds = [](const std::string& lines) {
+    const Read r = read_lines(with_start(lines));
+    EXPECT_EQ(r.messages, Messages{}) << lines;
+    std::string out;
+    for (std::size_t i = 1; i < r.moves.moves.size(); ++i) {
+      const Move& move = r.moves.moves[i];
+      out += (i > 1 ? " " : "") +
+             (move.kind == MoveKind::rapid ? std::string("FMAX") : fmt::format("{:.6g}", move.feed_mm_per_s * 60));
+    }
+    return out;
+  };
+  EXPECT_EQ(speeds("3 APPR LT X+20 Y+0 LEN5 R0 F100\n4 L X+30\n"), "FMAX 100 100");
+  EXPECT_EQ(speeds("3 L X+5 F400\n4 APPR LN X+20 Y+0 LEN5 R0 F100\n5 L X+30\n"), "400 400 100 100");
+  EXPECT_EQ(speeds("3 APPR CT X+20 Y+10 CCA90 R5 R0 F100\n4 L X+30\n"), "FMAX 100 100");
+  EXPECT_EQ(speeds("3 APPR LCT X+20 Y+10 R5 R0 F100\n4 L X+30\n"), "100 100 100");
+}
+
+/// X of the move, behind lines of parameters.
+TEST(Klartext, PartsAndPlacesOfTexts) {
+  const auto x = [](const std::string& lines) { return path(lines + "9 L X+Q1 R0 F500\n"); };
+  const std::string texts = "3 QS1 = \"PART 12.5\"\n4 QS2 = SUBSTR ( SRC_QS1 BEG5 LEN4 )\n";
+  EXPECT_EQ(x(texts + "5 Q1 = TONUMB ( SRC_QS2 )\n"), "12.5 0 0");
+  EXPECT_EQ(x(texts + "5 Q1 = INSTR ( SRC_QS1 SEA_QS2 BEG2 )\n"), "5 0 0");
+  EXPECT_EQ(x(texts + "5 Q1 = INSTR ( SRC_QS2 SEA_QS1 BEG0 )\n"), "4 0 0");  // not in there: the whole length
+  EXPECT_EQ(x(texts + "5 Q1 = STRCOMP ( SRC_QS1 SEA_QS2 )\n"), "1 0 0");
+  EXPECT_EQ(x(texts + "5 Q1 = STRCOMP ( SRC_QS2 SEA_QS1 )\n"), "-1 0 0");
+  EXPECT_EQ(x(texts + "5 QS3 = QS1\n6 Q1 = 3 + STRCOMP ( SRC_QS1 SEA_QS3 )\n"), "3 0 0");
+}
+
+TEST(Klartext, FunctionsOfAParameterWithoutABlank) {
+  EXPECT_EQ(path("3 Q20 = 30\n4 Q1 = 10*SINQ20 + SQRTQ20 * SQRTQ20\n5 L X+Q1 R0 F500\n"), "35 0 0");
+  EXPECT_EQ(path("3 QL2 = 9\n4 Q1 = SQRTQL2 - SQ QL2 + SQQL2\n5 L X+Q1 R0 F500\n"), "3 0 0");
+}
+
+/// The tool stays upright: nothing turns, and nothing is said.
+TEST(Klartext, UprightToolsAndPlanesTurnNothing) {
+  EXPECT_EQ(said("3 PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY\n4 L A+Q120 C+Q122 R0 FMAX\n5 LN X+1 TX0 TY0 TZ1\n"),
+            Messages{});
+}
+
+TEST(Klartext, ConditionsOfTextsAndOfWhatIsDefined) {
+  const auto jumps = [](const std::string& condition) {
+    const std::string way =
+        path("3 QS1 = \"ABC\"\n4 Q5 = 1\n5 " + condition + " GOTO LBL 1\n6 L X+5 R0 F500\n7 LBL 1\n8 L Y+7 R0 F500\n");
+    return way == "0 7 0";
+  };
+  EXPECT_TRUE(jumps("FN 9: IF QS1 EQU \"ABC\""));
+  EXPECT_FALSE(jumps("FN 9: IF QS1 EQU \"ABD\""));
+  EXPECT_TRUE(jumps("FN 10: IF QS1 NE \"ABD\""));
+  EXPECT_TRUE(jumps("FN 12: IF QS1 LT \"ABD\""));
+  EXPECT_TRUE(jumps("FN 9: IF Q5 IS DEFINED"));
+  EXPECT_FALSE(jumps("FN 9: IF Q6 IS DEFINED"));
+  EXPECT_TRUE(jumps("FN 9: IF Q6 IS UNDEFINED"));
+  EXPECT_FALSE(jumps("FN 9: IF QS1 IS UNDEFINED"));
+}
+
+TEST(Klartext, ARepetitionOfALabelBehindItIsSaid) {
+  EXPECT_EQ(
+      said("3 CALL LBL 1 REP 2\n4 L X+5 R0\n5 LBL 1\n6 L X+7 R0\n"),
+      Messages{"p.h:4:3: warning: LBL 1 stands behind its CALL LBL REP: the program goes on there, and the blocks "
+               "between are left out; a label before it, or CALL LBL without REP, was expected [label]"});
+}
+
 TEST(Klartext, RadiusCompensationWithARadiusOfTheProgram) {
   const Read r = read_lines(
       "1 TOOL DEF 1 L+0 R+2\n2 TOOL CALL 1 Z S1000 F600\n3 L X-10 Y-10 Z+0 R0 FMAX M3\n4 L X+0 Y+0 RL\n"

@@ -71,6 +71,28 @@ TEST(Siemens, VariablesArraysAndTheirRounding) {
   expect_near_mm(last(r), {3, 7, 2});
 }
 
+/// DEF INT I: the letter is a variable before = and in expressions, and the address before a number.
+TEST(Siemens, VariablesOfOneLetter) {
+  const Read r = read_siemens(
+      "DEF INT I, K=2\nDEF REAL Q[3]\nG17 G0 X0 Y0 Z0 F100\nFOR I=0 TO 2\nQ[I]=I*K+1\nENDFOR\nI=I+K\nX=Q[1] Y=I\n"
+      "G2 X13 Y=I I5 J0\nPART(4)\nM30\n%_N_PART_SPF\nPROC PART(REAL A)\nG0 Z=A\nM17\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(r.moves.moves.at(1).end_mm, {3, 5, 0});  // I is 3 behind the loop
+  expect_near_mm(r.moves.arcs.at(0).center_mm, {8, 5, 0});
+  expect_near_mm(last(r), {13, 5, 4});
+}
+
+TEST(Siemens, AxesOfTheMachineAtFixedPoints) {
+  const Read r = read_siemens("G0 X1 Y2 Z3\nG75 FP=2 X1=0 Z1=0\nG74 Y1=0\n");
+  EXPECT_EQ(r.messages, Messages{});
+  ASSERT_EQ(r.moves.moves.size(), 3u);
+  EXPECT_TRUE(r.moves.moves[1].reference);
+  EXPECT_EQ(r.moves.moves[2].reference_axes, 2);
+  EXPECT_EQ(
+      read_siemens("G0 X1=5\n").messages,
+      Messages{"p.mpf:1:4: error: X1=5: X1 is not an axis that Camber knows; X, Y, Z, A, B or C was expected [axis]"});
+}
+
 TEST(Siemens, JumpsGoToTheNearestLabelInTheirDirection) {
   const Read r = read_siemens(
       "R1=0\nMA: R1=R1+1\nIF R1==1 GOTOF MA IF R1==9 GOTOF ENDE\nGOTOF ENDE\nMA: R1=R1+10\nIF R1<30 GOTOB MA\nGOTOF "
