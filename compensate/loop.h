@@ -79,6 +79,13 @@ class Loop {
 
  private:
   using Prepare = std::function<void(std::vector<Observation>&)>;
+  /// A round before its prediction.
+  struct PlannedRound {
+    std::shared_ptr<const Trial> from;  ///< trial whose error it goes by
+    std::shared_ptr<Trial> made;        ///< with its text only
+    Round round{};
+    bool shows_gain = true;  ///< the change of the error shows the sensitivity
+  };
   using Fit = std::size_t(ShiftPath&, std::span<const Observation>, const FitShiftOptions&);  ///< fit_shift, fit_lifts
 
   bool has(machine::Lever lever) const {
@@ -108,9 +115,13 @@ class Loop {
   void look_out(CompensationResult& out);
 
   // loop_rounds.cpp
-  /// New shifts from the last trial's error, and their prediction. `prepare` may change the feeds of the path and the
-  /// observations that the shifts are fitted to.
-  void step(CompensationResult& out, double fraction, const Guard* guard, const Prepare& prepare = {});
+  /// New shifts from the last trial's error, and their prediction.
+  void step(CompensationResult& out, double fraction, const Guard* guard);
+  /// The text of new shifts, without its prediction. `prepare` may change the feeds of the path and the observations
+  /// that the shifts are fitted to.
+  PlannedRound plan_round(double fraction, const Guard* guard, const Prepare& prepare = {});
+  /// Predicts a round; the path must have its shifts and feeds.
+  void run_round(CompensationResult& out, PlannedRound planned);
   void fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round, Trial& next);
   void predict_trial(Trial& trial, const std::string& what);
   std::vector<Observation> wanted_of(const Observed& observed, const Guard* guard);
@@ -129,7 +140,7 @@ class Loop {
   bool met(const CompensationResult& out) const;
   void lower_feeds(CompensationResult& out, double percent);
   bool feeds_pay(double percent);
-  void step_with_feeds(CompensationResult& out, double percent);
+  bool step_with_feeds(CompensationResult& out, double percent);
   std::vector<PassRun> runs_after_shifts();
   bool cut_twice(CompensationResult& out, double percent);
   void compensate_version(std::unique_ptr<Version> version, CompensationResult& out, double percent);

@@ -145,28 +145,36 @@ void Loop::choose(CompensationResult& out) {
   activate(best_->version);
 }
 
-void Loop::step(CompensationResult& out, double fraction, const Guard* guard, const Prepare& prepare) {
-  const std::shared_ptr<const Trial> from = last_;
+void Loop::step(CompensationResult& out, double fraction, const Guard* guard) {
+  run_round(out, plan_round(fraction, guard));
+}
+
+Loop::PlannedRound Loop::plan_round(double fraction, const Guard* guard, const Prepare& prepare) {
+  PlannedRound out{.from = last_, .made = std::make_shared<Trial>()};
   const bool by_expectation = !expected_.empty() && !guard;
-  std::vector<Observation> observations = by_expectation ? expected_ : wanted_of(from->observed, guard);
+  std::vector<Observation> observations = by_expectation ? expected_ : wanted_of(last_->observed, guard);
   expected_.clear();
-  Round round;
-  round.gain = now_->sensitivity->mean();
-  round.step_fraction = fraction;
-  round.guard = guard != nullptr;
-  auto made = std::make_shared<Trial>();
-  now_->path->set_shifts(from->shifts);
-  FeedLever::set_fractions(*now_->path, from->fractions);
+  // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
+  out.shows_gain = !by_expectation && !prepare;
+  out.round.gain = now_->sensitivity->mean();
+  out.round.step_fraction = fraction;
+  out.round.guard = guard != nullptr;
+  now_->path->set_shifts(last_->shifts);
+  FeedLever::set_fractions(*now_->path, last_->fractions);
   if (prepare) prepare(observations);
   Fit* fit = guard ? &fit_lifts : &fit_shift;
   choose_splits(observations, fit);
-  fit_and_emit(observations, fraction, fit, round, *made);
-  predict_trial(*made, fmt::format("round {}", out.rounds.size()));
-  last_ = made;
-  // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
-  if (!by_expectation && !prepare) now_->sensitivity->learn(*now_->path, from->shifts, from->observed, last_->observed);
-  round.overcorrected_fraction = overcorrected_fraction(from->observed, last_->observed, tolerance_mm());
-  record(out, round);
+  fit_and_emit(observations, fraction, fit, out.round, *out.made);
+  return out;
+}
+
+void Loop::run_round(CompensationResult& out, PlannedRound planned) {
+  predict_trial(*planned.made, fmt::format("round {}", out.rounds.size()));
+  last_ = planned.made;
+  const Observed& before = planned.from->observed;
+  if (planned.shows_gain) now_->sensitivity->learn(*now_->path, planned.from->shifts, before, last_->observed);
+  planned.round.overcorrected_fraction = overcorrected_fraction(before, last_->observed, tolerance_mm());
+  record(out, planned.round);
 }
 
 /// Emits the path's shifts, and again with a stiffer path where it turns by more than the bound.
