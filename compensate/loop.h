@@ -124,6 +124,10 @@ class Loop {
   void run_round(CompensationResult& out, PlannedRound planned);
   void fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round, Trial& next);
   void predict_trial(Trial& trial, const std::string& what);
+  void set_bounds(Observed& observed) const;
+  WorsePlaces worse_of(const Trial& trial) const {
+    return worse_places(given_trial_->surface, trial.surface, trial.observed, job_.compensation);
+  }
   std::vector<Observation> wanted_of(const Observed& observed, const Guard* guard);
   void choose_splits(const std::vector<Observation>& observations, Fit* fit);
   void stiffen(const std::vector<MoveMap::MovePlace>& places);

@@ -196,6 +196,7 @@ nc::Emission Loop::first_cuts() {
   const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
   FitShiftOptions options = fit_options(stiffness, links, {});
   options.max_shift_mm += allowance_mm_;
+  options.bounded = false;
   fit_shift(thin.path(), thin.places_of(wanted), options);
   thin.give_shifts(path);
   return trials_.text_of(path, now_->splits->kept());

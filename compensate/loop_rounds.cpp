@@ -18,13 +18,14 @@ constexpr double kGuardGain = 0.1;  // ... this part of what it is over the limi
 constexpr int kLiftings = 5;        // of the path before a round of the guard, by what they are expected to bring
 constexpr int kStiffenings = 12;    // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
-constexpr double kGuardReach_mm = 2.0;   // a lift fades out over this length, or ...
-constexpr double kGuardSmoothings = 8;   // ... so many smoothing lengths
-constexpr double kMinFall = 0.1;         // of the 95th percentile: a round that brings less is the last one
-constexpr double kFinest_um = 0.1;       // a shift of less is below the last decimal of most programs
-constexpr double kLeftOver = 0.25;       // of the tolerance: what a shift can still correct is not worth a round
-constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
-constexpr double kLateSplit_mm = 0.002;  // ... a later one this
+constexpr double kGuardReach_mm = 2.0;    // a lift fades out over this length, or ...
+constexpr double kGuardSmoothings = 8;    // ... so many smoothing lengths
+constexpr double kBoundRoom_mm = 0.0002;  // by which a fit stays within what is no worse than given
+constexpr double kMinFall = 0.1;          // of the 95th percentile: a round that brings less is the last one
+constexpr double kFinest_um = 0.1;        // a shift of less is below the last decimal of most programs
+constexpr double kLeftOver = 0.25;        // of the tolerance: what a shift can still correct is not worth a round
+constexpr double kSplit_mm = 0.0005;      // a split of a line in the first round must be worth this, ...
+constexpr double kLateSplit_mm = 0.002;   // ... a later one this
 
 /// Counts the places along the path where the feed fraction changes.
 std::size_t count_feed_changes(const ShiftPath& path) {
@@ -59,7 +60,8 @@ FitShiftOptions Loop::fit_options(std::span<const double> stiffness, std::span<c
           .max_shift_mm = job_.compensation.max_shift_mm,
           .stiffness = stiffness,
           .links = links,
-          .link_stiffness = link_stiffness};
+          .link_stiffness = link_stiffness,
+          .bounded = true};
 }
 
 FitShiftOptions Loop::fit_options() const { return fit_options(now_->stiffness, now_->links, {}); }
@@ -220,6 +222,14 @@ void Loop::predict_trial(Trial& trial, const std::string& what) {
   trial.keep(trials_.predict(trial.emitted ? trial.emitted->program : setup_.program, progress(what)));
   trial.observed = trials_.observe(*now_->path, trial.emitted.get(), trial.surface);
   trial.observed.reach = reach_;
+  set_bounds(trial.observed);
+}
+
+/// The shifts that are fitted to the observations make no place worse than given.
+void Loop::set_bounds(Observed& observed) const {
+  for (std::size_t i = 0; i < observed.points.size(); ++i)
+    observed.points[i].bound_mm =
+        std::max(not_worse_mm(first_observed_.points[i].error_mm, tolerance_mm()) - kBoundRoom_mm, kBoundRoom_mm);
 }
 
 /// The errors that the next shifts are to take away.
@@ -265,7 +275,8 @@ void Loop::record(CompensationResult& out, Round round) {
   round.slowed = count_feed_changes(*now_->path);
   round.repeated = now_->passes.size();
   out.rounds.push_back(round);
-  figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um, round.machine_time_s > allowed_s_});
+  figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um, round.machine_time_s > allowed_s_,
+                      worse_of(*last_).p999_um});
   const bool by_p95 = has(machine::Lever::feed) || has(machine::Lever::passes);
   const std::size_t allowed = choose_round(figures_, depth_limit_um_, by_p95);
   if (allowed != allowed_index_) allowed_ = last_;  // only the newest round can take the place of another

@@ -92,8 +92,9 @@ void Loop::start(CompensationResult& out) {
   reach_ = reach_of(*now_->path, setup_.program.moves, given->observed, given->surface, setup_.own_stamps());
   given->observed.reach = reach_;
   if (foreign_fraction(given->observed) > kForeign) expect_hidden_rows(*given);
-  last_ = best_ = allowed_ = given_trial_ = given;
   first_observed_ = given->observed;
+  set_bounds(given->observed);
+  last_ = best_ = allowed_ = given_trial_ = given;
   out.reference = job_.compensation.reference;
   out.own_depth_limit = job_.compensation.depth_limit_um().has_value();
   depth_limit_um_ = job_.compensation.depth_limit_um().value_or(0);
