@@ -113,10 +113,13 @@ class Loop {
   void begin_version(Version& version);
   void expect_hidden_rows(Trial& given);
   void look_out(CompensationResult& out);
+  void choose_bounds(Trial& given);
+  std::vector<double> bounds_of_bow(const Trial& given);
 
   // loop_rounds.cpp
-  /// New shifts from the last trial's error, and their prediction.
-  void step(CompensationResult& out, double fraction, const Guard* guard);
+  /// New shifts from the last trial's error, and their prediction. False: their text is the last trial's, and nothing
+  /// is predicted.
+  bool step(CompensationResult& out, double fraction, const Guard* guard);
   /// The text of new shifts, without its prediction. `prepare` may change the feeds of the path and the observations
   /// that the shifts are fitted to.
   PlannedRound plan_round(double fraction, const Guard* guard, const Prepare& prepare = {});
@@ -124,7 +127,6 @@ class Loop {
   void run_round(CompensationResult& out, PlannedRound planned);
   void fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round, Trial& next);
   void predict_trial(Trial& trial, const std::string& what);
-  void set_bounds(Observed& observed) const;
   WorsePlaces worse_of(const Trial& trial) const {
     return worse_places(given_trial_->surface, trial.surface, trial.observed, job_.compensation);
   }
@@ -137,6 +139,7 @@ class Loop {
   bool done(const CompensationResult& out, const StepModel& model);
   bool worth_a_round(const CompensationResult& out, const StepModel& model);
   bool would_be_within(double effect);
+  bool shift_pays(const Trial& trial, double p95_um, double effect);
   JudgedErrors errors_after_shift(const Trial& trial, double effect);
   bool ask_for_lifts(Guard& guard, double deepest_um);
 
@@ -189,6 +192,7 @@ class Loop {
   std::size_t allowed_index_ = 0;
   std::vector<RoundFigures> figures_;  ///< one a round
   std::vector<bool> reach_;
+  std::vector<double> bound_mm_;  ///< Observation::bound_mm, one per point of the surface
   double depth_limit_um_ = 0;
   std::size_t first_round_ = 0;                                 ///< first round of the active version
   bool too_slow_ = false;                                       ///< runs were not cut twice for want of time

@@ -62,10 +62,10 @@ void Loop::lower_feeds(CompensationResult& out, double percent) {
   last_ = best_;
   const std::size_t before = out.best;
   for (int i = 0; i < (budget ? kBudgetRounds : kRungRounds); ++i) {
-    if (i % 2 == 1)
-      step(out, 1, nullptr);  // the shifts to these feeds
-    else if (!step_with_feeds(out, percent))
-      break;
+    const bool made = i % 2 == 0 ? step_with_feeds(out, percent)
+                                 : shift_pays(*last_, out.rounds.back().error_um.p95, 1) && step(out, 1, nullptr);
+    if (!made && i % 2 == 0) break;
+    if (!made) continue;  // the shifts to these feeds would change little
     if (out.rounds.back().machine_time_s <= allowed_s_ &&
         out.rounds.back().error_um.p95 < out.rounds[out.best].error_um.p95)
       take(out);

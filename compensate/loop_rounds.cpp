@@ -8,6 +8,9 @@
 #include "compensate/loop.h"
 
 namespace camber::compensate {
+
+using simulate::SimulatedProgram;
+
 namespace {
 
 constexpr double kMinGain = 0.05;   // a round that is expected to lower the rms by less is not worth a prediction
@@ -18,14 +21,13 @@ constexpr double kGuardGain = 0.1;  // ... this part of what it is over the limi
 constexpr int kLiftings = 5;        // of the path before a round of the guard, by what they are expected to bring
 constexpr int kStiffenings = 12;    // of the path where its angles grow by more than the bound
 constexpr double kStiffer = 2.5;
-constexpr double kGuardReach_mm = 2.0;    // a lift fades out over this length, or ...
-constexpr double kGuardSmoothings = 8;    // ... so many smoothing lengths
-constexpr double kBoundRoom_mm = 0.0002;  // by which a fit stays within what is no worse than given
-constexpr double kMinFall = 0.1;          // of the 95th percentile: a round that brings less is the last one
-constexpr double kFinest_um = 0.1;        // a shift of less is below the last decimal of most programs
-constexpr double kLeftOver = 0.25;        // of the tolerance: what a shift can still correct is not worth a round
-constexpr double kSplit_mm = 0.0005;      // a split of a line in the first round must be worth this, ...
-constexpr double kLateSplit_mm = 0.002;   // ... a later one this
+constexpr double kGuardReach_mm = 2.0;   // a lift fades out over this length, or ...
+constexpr double kGuardSmoothings = 8;   // ... so many smoothing lengths
+constexpr double kMinFall = 0.1;         // of the 95th percentile: a round that brings less is the last one
+constexpr double kFinest_um = 0.1;       // a shift of less is below the last decimal of most programs
+constexpr double kLeftOver = 0.25;       // of the tolerance: what a shift can still correct is not worth a round
+constexpr double kSplit_mm = 0.0005;     // a split of a line in the first round must be worth this, ...
+constexpr double kLateSplit_mm = 0.002;  // ... a later one this
 
 /// Counts the places along the path where the feed fraction changes.
 std::size_t count_feed_changes(const ShiftPath& path) {
@@ -72,7 +74,10 @@ void Loop::converge(CompensationResult& out) {
   while (!done(out, model)) {
     const Round from = out.rounds[out.best];
     const bool by_expectation = !expected_.empty();
-    step(out, share_, nullptr);
+    if (!step(out, share_, nullptr)) {
+      ended_ = Stop::stalled;
+      break;
+    }
     const double now = out.rounds.back().error_um.rms;
     if (!by_expectation) model.learn(from.error_um.rms, from.split, share_, now);
     if (now < from.error_um.rms) {
@@ -99,7 +104,7 @@ void Loop::stay_out_of_part(CompensationResult& out) {
   int without_gain = 0;
   for (int i = 0; i < kGuardRounds && without_gain < kGuardPatience && deepest_um > depth_limit_um_; ++i) {
     if (!ask_for_lifts(guard, deepest_um)) return;
-    step(out, 1, &guard);
+    if (!step(out, 1, &guard)) return;
     deepest_um = out.rounds.back().deepest_um;
     const bool gain = deepest_um - depth_limit_um_ < (1 - kGuardGain) * (least_um - depth_limit_um_);
     without_gain = gain ? 0 : without_gain + 1;
@@ -147,8 +152,13 @@ void Loop::choose(CompensationResult& out) {
   activate(best_->version);
 }
 
-void Loop::step(CompensationResult& out, double fraction, const Guard* guard) {
-  run_round(out, plan_round(fraction, guard));
+bool Loop::step(CompensationResult& out, double fraction, const Guard* guard) {
+  PlannedRound planned = plan_round(fraction, guard);
+  const SimulatedProgram& before = planned.from->emitted ? planned.from->emitted->program : setup_.program;
+  if (planned.from->version == active_ && planned.made->emitted->emission.text == before.text.source.text())
+    return false;
+  run_round(out, std::move(planned));
+  return true;
 }
 
 Loop::PlannedRound Loop::plan_round(double fraction, const Guard* guard, const Prepare& prepare) {
@@ -222,14 +232,7 @@ void Loop::predict_trial(Trial& trial, const std::string& what) {
   trial.keep(trials_.predict(trial.emitted ? trial.emitted->program : setup_.program, progress(what)));
   trial.observed = trials_.observe(*now_->path, trial.emitted.get(), trial.surface);
   trial.observed.reach = reach_;
-  set_bounds(trial.observed);
-}
-
-/// The shifts that are fitted to the observations make no place worse than given.
-void Loop::set_bounds(Observed& observed) const {
-  for (std::size_t i = 0; i < observed.points.size(); ++i)
-    observed.points[i].bound_mm =
-        std::max(not_worse_mm(first_observed_.points[i].error_mm, tolerance_mm()) - kBoundRoom_mm, kBoundRoom_mm);
+  trial.observed.set_bounds(bound_mm_);
 }
 
 /// The errors that the next shifts are to take away.
@@ -305,7 +308,8 @@ bool Loop::done(const CompensationResult& out, const StepModel& model) {
 bool Loop::worth_a_round(const CompensationResult& out, const StepModel& model) {
   const Round& best = out.rounds[out.best];
   if (would_be_within(model.effect(share_))) return true;
-  if (job_.compensation.goal == machine::Goal::best && last_gain_) return *last_gain_ > kMinFall;
+  if (job_.compensation.goal == machine::Goal::best && last_gain_)
+    return *last_gain_ > kMinFall && shift_pays(*best_, best.error_um.p95, model.effect(share_));
   return model.expected_rms_um(best.error_um.rms, best.split, share_) <= (1 - kMinGain) * best.error_um.rms;
 }
 
@@ -330,6 +334,13 @@ JudgedErrors Loop::errors_after_shift(const Trial& trial, double effect) {
     out.area_mm2.push_back(judged[i].area_mm2);
   }
   return out;
+}
+
+/// Returns whether the fraction `effect` of what shifts can still take away is more than a tenth of a trial's 95th
+/// percentile.
+bool Loop::shift_pays(const Trial& trial, double p95_um, double effect) {
+  const JudgedErrors expected = errors_after_shift(trial, effect);
+  return p95_of(expected.error_um, expected.area_mm2) < (1 - kMinFall) * p95_um;
 }
 
 /// Returns whether the best round, which is not within tolerance, is expected to come within it with the fraction

@@ -11,8 +11,8 @@ namespace camber::compensate {
 
 inline constexpr double kWorse_mm = 0.001;  ///< a place is worse if its error exceeds the given one by more than this
 
-/// Largest magnitude of the error that counts as no worse than `given_mm`: the given one and kWorse_mm, or the tolerance
-/// where that is larger.
+/// Largest magnitude of the error that counts as no worse than `given_mm`: the given one and kWorse_mm, or the
+/// tolerance where that is larger.
 double not_worse_mm(double given_mm, double tolerance_mm);
 
 /// Points of the judged surface whose error exceeds not_worse_mm.
