@@ -10,6 +10,7 @@
 #include "api/job.h"
 #include "api/run.h"
 #include "machine/assumptions.h"
+#include "machine/levers.h"
 #include "report/feature_results.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
@@ -57,6 +58,13 @@ CompensateResult result_of(const CompensationResult& c, const machine::Compensat
   return out;
 }
 
+void check_levers(const std::vector<std::string>& names, const machine::Job& job, Diagnostics& diagnostics) {
+  if (names.empty()) return;
+  for (const std::string& message : machine::levers_of(names).errors)
+    diagnostics.add({Severity::error, {job.path, 0, 0}, "compensate: " + message, "value-choice", {}});
+  diagnostics.throw_if_errors();
+}
+
 /// An input is not written over.
 void check_output(const std::string& output, const machine::Job& job) {
   std::error_code ec;
@@ -75,6 +83,7 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
   run.execute([&] {
     Diagnostics found = job.impl().found;
     check_output(options.output, api::programmed(job));
+    check_levers(options.levers, job.impl().job, found);
     const api::CompensateRequest request{.uncertainty = options.uncertainty,
                                          .measured = options.measured,
                                          .measured_program = options.measured_program,
@@ -83,6 +92,7 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
                                          .keep_anyway = options.keep_anyway,
                                          .header = options.header,
                                          .header_hash = options.header_hash,
+                                         .levers = options.levers,
                                          .progress = run.progress()};
     const api::CompensatedJob done = api::compensate_job(job.impl().job, request, found);
     for (const std::string& name : done.result.unknown_parameters)

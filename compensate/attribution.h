@@ -30,6 +30,9 @@ struct Observed {
   std::vector<Observation> hidden{};
   /// Returns the observations that may be shifted; where their place passes above a point, the hidden ones.
   std::vector<Observation> of_path() const;
+  void set_bounds(const std::vector<double>& bound_mm) {
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].bound_mm = bound_mm[i];
+  }
 };
 
 /// The place that makes the point on the nominal path; nothing where that is another program's, or may not be shifted.

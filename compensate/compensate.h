@@ -38,6 +38,7 @@
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
 #include "compensate/verdict.h"
+#include "compensate/worse.h"
 #include "machine/job.h"
 #include "removal/stock.h"
 #include "simulate/setup.h"
@@ -100,6 +101,7 @@ struct CompensationResult {
   bool feed_unusable = false;    ///< the levers by default have feed, but no F word can be changed
   double depth_limit_um = 0;     ///< the job's, or default_depth_limit_um
   bool own_depth_limit = false;  ///< the job gives one
+  WorsePlaces worse;             ///< than given, of the emitted program
   double unseen_mm2 = 0;         ///< area of the nominal surface without a point
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;

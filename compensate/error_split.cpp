@@ -29,6 +29,7 @@ FitShiftOptions stiff(const FitShiftOptions& options) {
   FitShiftOptions out = options;
   out.max_shift_mm = std::numeric_limits<double>::infinity();
   out.smoothing_mm = std::min(kStiff, options.smoothing_mm);
+  out.bounded = false;
   return out;
 }
 
@@ -59,7 +60,10 @@ std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const
   std::vector<Observation> out(observations.begin(), observations.end());
   const std::vector<double> form =
       row_form_mm(path, observations, left_by(path, observations, stiff(options)), options.smoothing_mm);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i].error_mm -= form[i];
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i].error_mm -= form[i];
+    out[i].form_mm = form[i];
+  }
   return out;
 }
 
@@ -78,7 +82,7 @@ struct Fits {
   std::vector<std::size_t> index;  ///< index into Observed, one per observation
   std::vector<Observation> all;    ///< as observed
   std::vector<Observation> asked;  ///< less the form across the rows
-  std::vector<double> at_one_place, smooth, limited;
+  std::vector<double> at_one_place, smooth, limited, bounded;
   /// Finds, in smooth - at_one_place, what keeps the same form across the cutter for millimetres along the path. A
   /// shift that may change from one tooth passing to the next follows it, since a helix leaves each height at another
   /// place of the path; bow explains it, an entry or a corner does not.
@@ -95,10 +99,14 @@ Fits fits_of(const ShiftPath& path, const Observed& observed, const FitShiftOpti
   }
   FitShiftOptions free = options;
   free.max_shift_mm = std::numeric_limits<double>::infinity();
+  free.bounded = false;
   out.asked = without_row_form(path, out.all, options);
   out.at_one_place = left_by(path, out.asked, stiff(options));
   out.smooth = left_by(path, out.asked, free);
-  out.limited = left_by(path, out.asked, options);
+  FitShiftOptions limited = options;
+  limited.bounded = false;
+  out.limited = left_by(path, out.asked, limited);
+  out.bounded = options.bounded ? left_by(path, out.asked, options) : out.limited;
   return out;
 }
 
@@ -114,10 +122,11 @@ PointCause cause_of(const Fits& f, std::size_t i) {
   const Observation& o = f.all[i];
   const Cause fixed = o.opposed ? Cause::opposed : o.at_tip ? Cause::tip : Cause::bow;
   const double form = o.error_mm - f.asked[i].error_mm;
-  PointCause out{Cause::correctable, f.asked[i].error_mm - f.limited[i]};
+  PointCause out{Cause::correctable, f.asked[i].error_mm - f.bounded[i]};
   const auto offer = [&](Cause cause, double error_mm) {
     if (std::abs(error_mm) > std::abs(out.error_mm)) out = {cause, error_mm};
   };
+  offer(Cause::bounded, f.bounded[i] - f.limited[i]);
   offer(Cause::limited, f.limited[i] - f.smooth[i]);
   const double bow = f.bow_in_short_range[i];
   offer(Cause::short_range, f.smooth[i] - f.at_one_place[i] - bow);
@@ -170,24 +179,27 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
   const std::vector<double> error = errors(f.asked);
   std::vector<double> taken, taken_um, areas;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    taken.push_back(error[i] - f.limited[i]);
+    taken.push_back(error[i] - f.bounded[i]);
     taken_um.push_back(1000 * taken.back());
     areas.push_back(all[i].area_mm2);
   }
   const double total = mean_square(error, all, area, every), left = mean_square(f.at_one_place, all, area, every),
                left_smooth = std::max(left, mean_square(f.smooth, all, area, every)),
-               left_limited = std::max(left_smooth, mean_square(f.limited, all, area, every));
+               left_limited = std::max(left_smooth, mean_square(f.limited, all, area, every)),
+               left_bounded = std::max(left_limited, mean_square(f.bounded, all, area, every));
   // A smooth path is not the least squares' best: what the fit would still move counts where it would gain less.
-  const double correctable = std::max(total - left_limited, mean_square(taken, all, area, every)),
+  const double correctable = std::max(total - left_bounded, mean_square(taken, all, area, every)),
+               bounded_by = std::clamp(left_bounded - left_limited, 0.0, std::max(0.0, total - correctable)),
                limited_by = left_limited - left_smooth,
-               short_range = std::max(0.0, total - correctable - limited_by - left) * without_bow(f, area);
+               short_range = std::max(0.0, total - correctable - bounded_by - limited_by - left) * without_bow(f, area);
   out.opposed_um = um(mean_square(f.at_one_place, all, area, [](const Observation& o) { return o.opposed; }));
   out.tip_um = um(mean_square(f.at_one_place, all, area, [](const Observation& o) { return o.at_tip && !o.opposed; }));
   out.short_range_um = um(short_range);
+  out.bounded_um = um(bounded_by);
   out.limited_um = um(limited_by);
   out.correctable_um = um(correctable);
   const auto square = [](double value_um) { return value_um * value_um / 1e6; };
-  out.bow_um = um(mean_square(errors(all), all, area, every) - correctable - limited_by - short_range -
+  out.bow_um = um(mean_square(errors(all), all, area, every) - correctable - bounded_by - limited_by - short_range -
                   square(out.opposed_um) - square(out.tip_um));
   const removal::ErrorFigures figures = removal::error_figures(taken_um, areas);
   out.correctable_p95_um = figures.p95;

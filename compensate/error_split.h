@@ -13,16 +13,19 @@ namespace camber::compensate {
 
 /// Root mean squares over the judged surface, um: squares add up to the error's,
 ///
-///   rms^2 = correctable^2 + guard^2 + limited^2 + short_range^2 + opposed^2 + tip^2 + bow^2 + not_compensated^2
+///   rms^2 = correctable^2 + guard^2 + bounded^2 + limited^2 + short_range^2 + opposed^2 + tip^2 + bow^2 +
+///   not_compensated^2
 ///
 /// The parts come from least squares of the error against shifts of the path, each one with less freedom:
-/// any shift at every point of the path; then smooth along the path; then within the largest shift. The shifts are
+/// any shift at every point of the path; then smooth along the path; then within the largest shift; then without a
+/// place that becomes worse than given (Observation::bound_mm), where the options are bounded. The shifts are
 /// fitted to the error less the form across the rows, so that they do not follow where the grid shows a row.
 struct ErrorSplit {
   double correctable_um = 0;      ///< correctable by a shift within the limits
   double correctable_p95_um = 0;  ///< 95th percentile of its magnitude
   double correctable_max_um = 0;
   double guard_um = 0;            ///< given up by the guard to keep the depth limit
+  double bounded_um = 0;          ///< given up so that no place becomes worse than given
   double limited_um = 0;          ///< needs a shift over max_shift_mm
   double short_range_um = 0;      ///< changes along the path faster than a smooth path can
   double opposed_um = 0;          ///< opposite surfaces generated at one path position (a slot)
@@ -46,7 +49,7 @@ std::vector<double> left_by_shift_mm(const ShiftPath& path, std::span<const Obse
                                      const FitShiftOptions& options);
 
 /// Where a part of an error comes from.
-enum class Cause { correctable, guard, limited, short_range, opposed, tip, bow, not_compensated };
+enum class Cause { correctable, guard, bounded, limited, short_range, opposed, tip, bow, not_compensated };
 
 /// The error point by point, one per entry of Observed: which cause most of it has, and how much that is.
 struct PointCause {

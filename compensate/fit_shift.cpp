@@ -193,15 +193,16 @@ std::vector<Vec3> applied(const System& s, const ShiftPath& path, std::span<cons
   return out;
 }
 
-/// Preconditioned conjugate gradients; without links the first step is the solution.
+/// Preconditioned conjugate gradients from `x` on; without links the first step is the solution.
 std::vector<Vec3> solve(const System& s, const ShiftPath& path, std::span<const RowLink> links,
-                        const std::vector<double>& stiffness) {
+                        const std::vector<double>& stiffness, std::vector<Vec3> x) {
   constexpr int kSteps = 300;
   constexpr double kClose = 1e-6;
   const Chains chains(s, path);
-  std::vector<Vec3> x = chains.solve(s.right);
-  if (links.empty()) return x;
-  const double whole = dot(s.right, x);
+  const std::vector<Vec3> apart = chains.solve(s.right);
+  if (links.empty()) return apart;
+  if (x.empty()) x = apart;
+  const double whole = dot(s.right, apart);
   std::vector<Vec3> r = applied(s, path, links, stiffness, x);
   for (std::size_t i = 0; i < r.size(); ++i)
     r[i] = path.points()[i].fixed ? Vec3(Vec3::Zero()) : Vec3(s.right[i] - r[i]);
@@ -222,10 +223,10 @@ std::vector<Vec3> solve(const System& s, const ShiftPath& path, std::span<const 
   return x;
 }
 
-}  // namespace
-
-std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options) {
-  auto& points = path.points();
+/// Shifts that minimize the sum; they start at `x`, or where it is empty at none.
+std::vector<Vec3> fitted(const ShiftPath& path, std::span<const Observation> observations,
+                         const FitShiftOptions& options, std::vector<Vec3> x) {
+  const auto& points = path.points();
   System s{std::vector<Matrix3d>(points.size(), Matrix3d::Zero()),
            std::vector<Matrix3d>(points.size(), Matrix3d::Zero()), std::vector<Vec3>(points.size(), Vec3::Zero())};
   double area = 0, length = 0;
@@ -244,7 +245,69 @@ std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations
   }
   const std::vector<double> between = add_links(s, mu, weight, options);
   for (const Chain& c : path.chains()) add_plunges(s, path, c);
-  const std::vector<Vec3> shifts = solve(s, path, options.links, between);
+  return solve(s, path, options.links, between, std::move(x));
+}
+
+/// The bounds of observations, and what holds a fit within them: of an observation that would exceed its bound b,
+///
+///   a (e + x)^2 + kHold a (e + form + x -+ b + p)^2,    x = g n . (s - s_old)
+///
+/// takes the place of the first term, with p the sum of what it exceeded the bound by in the fits since it was held.
+class Bounds {
+ public:
+  explicit Bounds(std::span<const Observation> observations)
+      : asked_(observations), pull_mm_(observations.size(), 0.0) {}
+
+  /// Learns from a fit. Returns whether another one is needed.
+  bool learn(const ShiftPath& path, const std::vector<Vec3>& shifts) {
+    bool over = false;
+    for (std::size_t i = 0; i < asked_.size(); ++i) {
+      const Observation& o = asked_[i];
+      if (std::isinf(o.bound_mm)) continue;
+      const double v = o.place.upper_fraction, u = 1 - v;
+      const Vec3 change = u * (shifts[o.place.lower] - path.points()[o.place.lower].shift_mm) +
+                          v * (shifts[o.place.lower + 1] - path.points()[o.place.lower + 1].shift_mm);
+      const double left_mm = o.error_mm + o.form_mm + o.gain * o.normal.dot(change);
+      // The side that holds it already, or else the one that it is on.
+      const double side = pull_mm_[i] != 0 ? (pull_mm_[i] > 0 ? 1.0 : -1.0) : (left_mm > 0 ? 1.0 : -1.0);
+      const double beyond_mm = side * left_mm - o.bound_mm;
+      over = over || beyond_mm > kClose_mm;
+      const bool held = pull_mm_[i] != 0;
+      pull_mm_[i] = side * (held ? std::max(0.0, std::abs(pull_mm_[i]) + beyond_mm) : beyond_mm > 0 ? kNone_mm : 0.0);
+    }
+    return over;
+  }
+
+  std::vector<Observation> held() const {
+    std::vector<Observation> out(asked_.begin(), asked_.end());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      if (pull_mm_[i] == 0) continue;
+      Observation& o = out[i];
+      const double bound_mm = pull_mm_[i] > 0 ? o.bound_mm : -o.bound_mm;
+      o.error_mm = (o.error_mm + kHold * (o.error_mm + o.form_mm - bound_mm + pull_mm_[i])) / (1 + kHold);
+      o.area_mm2 *= 1 + kHold;
+    }
+    return out;
+  }
+
+ private:
+  static constexpr double kHold = 8;
+  static constexpr double kClose_mm = 0.0001;
+  static constexpr double kNone_mm = 1e-12;  // pull of a bound that is held for the first time
+  std::span<const Observation> asked_;
+  std::vector<double> pull_mm_;
+};
+
+}  // namespace
+
+std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options) {
+  constexpr int kFits = 12;  // within bounds
+  std::vector<Vec3> shifts = fitted(path, observations, options, {});
+  if (options.bounded) {
+    Bounds bounds(observations);
+    for (int i = 0; i < kFits && bounds.learn(path, shifts); ++i)
+      shifts = fitted(path, bounds.held(), options, std::move(shifts));
+  }
   path.set_shifts(shifts);
   return path.cut_to(options.max_shift_mm);
 }

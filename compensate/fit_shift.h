@@ -5,6 +5,7 @@
 // with error e, area a, weight w, normal n and sensitivity g of each observation, by conjugate gradients; the exact
 // solution of each chain is the preconditioner. mu follows from the smoothing length and the local mean of w.
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct Observation {
   bool foreign = false;                ///< made by one row on the nominal path, cut by another
   bool above = false;                  ///< the place passes above the surface: see Observed::hidden
   bool opposed = false;                ///< generated at the same path position as an opposite surface
+  double form_mm = 0;  ///< further part of the error, the same across the row, that no shift is asked for
+  double bound_mm = std::numeric_limits<double>::infinity();  ///< magnitude that error and form together may reach
 };
 
 struct FitShiftOptions {
@@ -38,6 +41,7 @@ struct FitShiftOptions {
   std::span<const double> stiffness{};
   std::span<const RowLink> links{};          ///< between rows
   std::span<const double> link_stiffness{};  ///< one per link, as `stiffness`
+  bool bounded = false;                      ///< Observation::bound_mm is kept
 };
 
 /// Returns the length of the shortest feature of a shift that a grid of these voxels resolves. A shorter one would
@@ -56,6 +60,9 @@ constexpr double smoothing_mm(double voxel_mm) { return std::max(0.2, 2.5 * voxe
 /// with links, conjugate gradients with the chains' exact solution as preconditioner. Directions in which hardly any
 /// surface faces stay at rest; where surfaces face each other (a slot) the least squares between them results. Shifts
 /// longer than max_shift_mm are cut to it. Returns how many points were.
+///
+/// `bounded`: subject to |e + form + g n . (s - s_old)| <= bound of each observation, by the method of multipliers
+/// (augmented Lagrangian); where smoothness and bounds contradict each other, between the two.
 std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options);
 
 }  // namespace camber::compensate

@@ -87,6 +87,7 @@ std::size_t fit_lifts(ShiftPath& path, std::span<const Observation> lifts, const
   path.set_shifts(std::vector<Vec3>(before.size(), Vec3::Zero()));
   FitShiftOptions unbound = options;
   unbound.max_shift_mm = std::numeric_limits<double>::infinity();
+  unbound.bounded = false;
   fit_shift(path, lifts, unbound);
   for (std::size_t p = 0; p < before.size(); ++p) path.points()[p].shift_mm += before[p];
   return path.cut_to(options.max_shift_mm);

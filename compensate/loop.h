@@ -79,6 +79,13 @@ class Loop {
 
  private:
   using Prepare = std::function<void(std::vector<Observation>&)>;
+  /// A round before its prediction.
+  struct PlannedRound {
+    std::shared_ptr<const Trial> from;  ///< trial whose error it goes by
+    std::shared_ptr<Trial> made;        ///< with its text only
+    Round round{};
+    bool shows_gain = true;  ///< the change of the error shows the sensitivity
+  };
   using Fit = std::size_t(ShiftPath&, std::span<const Observation>, const FitShiftOptions&);  ///< fit_shift, fit_lifts
 
   bool has(machine::Lever lever) const {
@@ -106,13 +113,23 @@ class Loop {
   void begin_version(Version& version);
   void expect_hidden_rows(Trial& given);
   void look_out(CompensationResult& out);
+  void choose_bounds(Trial& given);
+  std::vector<double> bounds_of_bow(const Trial& given);
 
   // loop_rounds.cpp
-  /// New shifts from the last trial's error, and their prediction. `prepare` may change the feeds of the path and the
-  /// observations that the shifts are fitted to.
-  void step(CompensationResult& out, double fraction, const Guard* guard, const Prepare& prepare = {});
+  /// New shifts from the last trial's error, and their prediction. False: their text is the last trial's, and nothing
+  /// is predicted.
+  bool step(CompensationResult& out, double fraction, const Guard* guard);
+  /// The text of new shifts, without its prediction. `prepare` may change the feeds of the path and the observations
+  /// that the shifts are fitted to.
+  PlannedRound plan_round(double fraction, const Guard* guard, const Prepare& prepare = {});
+  /// Predicts a round; the path must have its shifts and feeds.
+  void run_round(CompensationResult& out, PlannedRound planned);
   void fit_and_emit(const std::vector<Observation>& observations, double fraction, Fit* fit, Round& round, Trial& next);
   void predict_trial(Trial& trial, const std::string& what);
+  WorsePlaces worse_of(const Trial& trial) const {
+    return worse_places(given_trial_->surface, trial.surface, trial.observed, job_.compensation);
+  }
   std::vector<Observation> wanted_of(const Observed& observed, const Guard* guard);
   void choose_splits(const std::vector<Observation>& observations, Fit* fit);
   void stiffen(const std::vector<MoveMap::MovePlace>& places);
@@ -122,6 +139,7 @@ class Loop {
   bool done(const CompensationResult& out, const StepModel& model);
   bool worth_a_round(const CompensationResult& out, const StepModel& model);
   bool would_be_within(double effect);
+  bool shift_pays(const Trial& trial, double p95_um, double effect);
   JudgedErrors errors_after_shift(const Trial& trial, double effect);
   bool ask_for_lifts(Guard& guard, double deepest_um);
 
@@ -129,7 +147,7 @@ class Loop {
   bool met(const CompensationResult& out) const;
   void lower_feeds(CompensationResult& out, double percent);
   bool feeds_pay(double percent);
-  void step_with_feeds(CompensationResult& out, double percent);
+  bool step_with_feeds(CompensationResult& out, double percent);
   std::vector<PassRun> runs_after_shifts();
   bool cut_twice(CompensationResult& out, double percent);
   void compensate_version(std::unique_ptr<Version> version, CompensationResult& out, double percent);
@@ -174,6 +192,7 @@ class Loop {
   std::size_t allowed_index_ = 0;
   std::vector<RoundFigures> figures_;  ///< one a round
   std::vector<bool> reach_;
+  std::vector<double> bound_mm_;  ///< Observation::bound_mm, one per point of the surface
   double depth_limit_um_ = 0;
   std::size_t first_round_ = 0;                                 ///< first round of the active version
   bool too_slow_ = false;                                       ///< runs were not cut twice for want of time

@@ -154,6 +154,7 @@ void Loop::finish(CompensationResult& out) {
   out.within_part = out.depth_after.gouge_depth_p999_um <= max_um;
   out.plain_after = figures_of(*best_);
   out.within_tolerance = within_tolerance(out.plain_after, job_.compensation);
+  out.worse = worse_of(*best_);
   out.stop = verdict(out);
   out.limits = binding_limits(out);
   if (!out.within_tolerance) {

@@ -15,7 +15,9 @@ constexpr int kRungRounds = 2;
 constexpr int kBudgetRounds = 6;
 constexpr double kDefaultBudget_percent = 10;  // where the job names no levers
 constexpr double kPays = 0.1;        // of the 95th percentile: what feeds by default must be expected to bring
-constexpr double kTimeRoom = 0.003;  // by which a budget may be exceeded
+constexpr double kTimeRoom = 0.003;  // by which the shifts that follow a plan of feeds may exceed a budget
+constexpr int kPlannings = 5;        // of feeds, until their text fits into the budget
+constexpr double kReserve = 0.98;    // of the time that should fit by the last plan
 constexpr double kMinExtra = 0.005;  // less extra time is not worth a round
 constexpr double kWanted = 0.9;      // of the tolerance: what feeds and second cuts are chosen for
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
@@ -60,10 +62,10 @@ void Loop::lower_feeds(CompensationResult& out, double percent) {
   last_ = best_;
   const std::size_t before = out.best;
   for (int i = 0; i < (budget ? kBudgetRounds : kRungRounds); ++i) {
-    if (i % 2 == 0)
-      step_with_feeds(out, percent);
-    else
-      step(out, 1, nullptr);  // the shifts to these feeds
+    const bool made = i % 2 == 0 ? step_with_feeds(out, percent)
+                                 : shift_pays(*last_, out.rounds.back().error_um.p95, 1) && step(out, 1, nullptr);
+    if (!made && i % 2 == 0) break;
+    if (!made) continue;  // the shifts to these feeds would change little
     if (out.rounds.back().machine_time_s <= allowed_s_ &&
         out.rounds.back().error_um.p95 < out.rounds[out.best].error_um.p95)
       take(out);
@@ -87,22 +89,37 @@ bool Loop::feeds_pay(double percent) {
   return expected_mm <= (1 - kPays) * p95_of(left_mm, area_mm2);
 }
 
-void Loop::step_with_feeds(CompensationResult& out, double percent) {
+/// One round with new feeds. Changes of feed cost more on the machine than their plan has it: until the text fits into
+/// the time, it is planned for less. False: no text does, and nothing was predicted.
+bool Loop::step_with_feeds(CompensationResult& out, double percent) {
   const std::shared_ptr<const Trial> from = last_;
   FeedLever& lever = *now_->feeds;
   const double wanted_mm = budget_percent() ? 0.0 : kWanted * tolerance_mm();
   const double program_s = setup_.program.feed.time_s;
   const double budget_s = std::max(0.0, (1 + percent / 100) * given_s_ - program_s);
-  double planned_s = 0;
-  step(out, 1, nullptr, [&](std::vector<Observation>& observations) {
+  const Splits splits = *now_->splits;
+  double plan_s = budget_s, planned_s = 0;
+  const Prepare choose = [&](std::vector<Observation>& observations) {
     const std::vector<Observation> all = from->observed.of_path();
     const std::vector<double> left = left_by_shift_mm(*now_->path, all, fit_options());
-    planned_s = lever.choose(*now_->path, all, left, budget_s, wanted_mm).extra_s;
+    planned_s = lever.choose(*now_->path, all, left, plan_s, wanted_mm).extra_s;
     now_->splits->add_feed_changes(*now_->path);
     lever.apply_to(observations, *now_->path, from->fractions);
-  });
-  lever.learn(*now_->path, from->fractions, from->shifts, from->observed, last_->observed, planned_s,
-              out.rounds.back().machine_time_s - program_s);
+  };
+  for (int i = 0; i < kPlannings; ++i) {
+    now_->splits = splits;
+    now_->link_stiffness.clear();
+    PlannedRound round = plan_round(1, nullptr, choose);
+    const double found_s = round.made->emitted->program.feed.time_s - program_s;
+    if (found_s > budget_s) {
+      plan_s *= kReserve * budget_s / found_s;
+      continue;
+    }
+    run_round(out, std::move(round));
+    lever.learn(*now_->path, from->fractions, from->shifts, from->observed, last_->observed, planned_s, found_s);
+    return true;
+  }
+  return false;
 }
 
 // --- second cuts ----------------------------------------------------------------------------------------------------
@@ -179,6 +196,7 @@ nc::Emission Loop::first_cuts() {
   const std::vector<RowLink> links = row_links(thin.path(), kRowReach_mm);
   FitShiftOptions options = fit_options(stiffness, links, {});
   options.max_shift_mm += allowance_mm_;
+  options.bounded = false;
   fit_shift(thin.path(), thin.places_of(wanted), options);
   thin.give_shifts(path);
   return trials_.text_of(path, now_->splits->kept());

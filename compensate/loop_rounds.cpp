@@ -8,6 +8,9 @@
 #include "compensate/loop.h"
 
 namespace camber::compensate {
+
+using simulate::SimulatedProgram;
+
 namespace {
 
 constexpr double kMinGain = 0.05;   // a round that is expected to lower the rms by less is not worth a prediction
@@ -59,7 +62,8 @@ FitShiftOptions Loop::fit_options(std::span<const double> stiffness, std::span<c
           .max_shift_mm = job_.compensation.max_shift_mm,
           .stiffness = stiffness,
           .links = links,
-          .link_stiffness = link_stiffness};
+          .link_stiffness = link_stiffness,
+          .bounded = true};
 }
 
 FitShiftOptions Loop::fit_options() const { return fit_options(now_->stiffness, now_->links, {}); }
@@ -70,7 +74,10 @@ void Loop::converge(CompensationResult& out) {
   while (!done(out, model)) {
     const Round from = out.rounds[out.best];
     const bool by_expectation = !expected_.empty();
-    step(out, share_, nullptr);
+    if (!step(out, share_, nullptr)) {
+      ended_ = Stop::stalled;
+      break;
+    }
     const double now = out.rounds.back().error_um.rms;
     if (!by_expectation) model.learn(from.error_um.rms, from.split, share_, now);
     if (now < from.error_um.rms) {
@@ -97,7 +104,7 @@ void Loop::stay_out_of_part(CompensationResult& out) {
   int without_gain = 0;
   for (int i = 0; i < kGuardRounds && without_gain < kGuardPatience && deepest_um > depth_limit_um_; ++i) {
     if (!ask_for_lifts(guard, deepest_um)) return;
-    step(out, 1, &guard);
+    if (!step(out, 1, &guard)) return;
     deepest_um = out.rounds.back().deepest_um;
     const bool gain = deepest_um - depth_limit_um_ < (1 - kGuardGain) * (least_um - depth_limit_um_);
     without_gain = gain ? 0 : without_gain + 1;
@@ -145,28 +152,41 @@ void Loop::choose(CompensationResult& out) {
   activate(best_->version);
 }
 
-void Loop::step(CompensationResult& out, double fraction, const Guard* guard, const Prepare& prepare) {
-  const std::shared_ptr<const Trial> from = last_;
+bool Loop::step(CompensationResult& out, double fraction, const Guard* guard) {
+  PlannedRound planned = plan_round(fraction, guard);
+  const SimulatedProgram& before = planned.from->emitted ? planned.from->emitted->program : setup_.program;
+  if (planned.from->version == active_ && planned.made->emitted->emission.text == before.text.source.text())
+    return false;
+  run_round(out, std::move(planned));
+  return true;
+}
+
+Loop::PlannedRound Loop::plan_round(double fraction, const Guard* guard, const Prepare& prepare) {
+  PlannedRound out{.from = last_, .made = std::make_shared<Trial>()};
   const bool by_expectation = !expected_.empty() && !guard;
-  std::vector<Observation> observations = by_expectation ? expected_ : wanted_of(from->observed, guard);
+  std::vector<Observation> observations = by_expectation ? expected_ : wanted_of(last_->observed, guard);
   expected_.clear();
-  Round round;
-  round.gain = now_->sensitivity->mean();
-  round.step_fraction = fraction;
-  round.guard = guard != nullptr;
-  auto made = std::make_shared<Trial>();
-  now_->path->set_shifts(from->shifts);
-  FeedLever::set_fractions(*now_->path, from->fractions);
+  // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
+  out.shows_gain = !by_expectation && !prepare;
+  out.round.gain = now_->sensitivity->mean();
+  out.round.step_fraction = fraction;
+  out.round.guard = guard != nullptr;
+  now_->path->set_shifts(last_->shifts);
+  FeedLever::set_fractions(*now_->path, last_->fractions);
   if (prepare) prepare(observations);
   Fit* fit = guard ? &fit_lifts : &fit_shift;
   choose_splits(observations, fit);
-  fit_and_emit(observations, fraction, fit, round, *made);
-  predict_trial(*made, fmt::format("round {}", out.rounds.size()));
-  last_ = made;
-  // What rows do that come out of the shadow of others says nothing of their gain, nor what another feed does.
-  if (!by_expectation && !prepare) now_->sensitivity->learn(*now_->path, from->shifts, from->observed, last_->observed);
-  round.overcorrected_fraction = overcorrected_fraction(from->observed, last_->observed, tolerance_mm());
-  record(out, round);
+  fit_and_emit(observations, fraction, fit, out.round, *out.made);
+  return out;
+}
+
+void Loop::run_round(CompensationResult& out, PlannedRound planned) {
+  predict_trial(*planned.made, fmt::format("round {}", out.rounds.size()));
+  last_ = planned.made;
+  const Observed& before = planned.from->observed;
+  if (planned.shows_gain) now_->sensitivity->learn(*now_->path, planned.from->shifts, before, last_->observed);
+  planned.round.overcorrected_fraction = overcorrected_fraction(before, last_->observed, tolerance_mm());
+  record(out, planned.round);
 }
 
 /// Emits the path's shifts, and again with a stiffer path where it turns by more than the bound.
@@ -212,6 +232,7 @@ void Loop::predict_trial(Trial& trial, const std::string& what) {
   trial.keep(trials_.predict(trial.emitted ? trial.emitted->program : setup_.program, progress(what)));
   trial.observed = trials_.observe(*now_->path, trial.emitted.get(), trial.surface);
   trial.observed.reach = reach_;
+  trial.observed.set_bounds(bound_mm_);
 }
 
 /// The errors that the next shifts are to take away.
@@ -257,7 +278,8 @@ void Loop::record(CompensationResult& out, Round round) {
   round.slowed = count_feed_changes(*now_->path);
   round.repeated = now_->passes.size();
   out.rounds.push_back(round);
-  figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um, round.machine_time_s > allowed_s_});
+  figures_.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um, round.machine_time_s > allowed_s_,
+                      worse_of(*last_).p999_um});
   const bool by_p95 = has(machine::Lever::feed) || has(machine::Lever::passes);
   const std::size_t allowed = choose_round(figures_, depth_limit_um_, by_p95);
   if (allowed != allowed_index_) allowed_ = last_;  // only the newest round can take the place of another
@@ -286,7 +308,8 @@ bool Loop::done(const CompensationResult& out, const StepModel& model) {
 bool Loop::worth_a_round(const CompensationResult& out, const StepModel& model) {
   const Round& best = out.rounds[out.best];
   if (would_be_within(model.effect(share_))) return true;
-  if (job_.compensation.goal == machine::Goal::best && last_gain_) return *last_gain_ > kMinFall;
+  if (job_.compensation.goal == machine::Goal::best && last_gain_)
+    return *last_gain_ > kMinFall && shift_pays(*best_, best.error_um.p95, model.effect(share_));
   return model.expected_rms_um(best.error_um.rms, best.split, share_) <= (1 - kMinGain) * best.error_um.rms;
 }
 
@@ -311,6 +334,13 @@ JudgedErrors Loop::errors_after_shift(const Trial& trial, double effect) {
     out.area_mm2.push_back(judged[i].area_mm2);
   }
   return out;
+}
+
+/// Returns whether the fraction `effect` of what shifts can still take away is more than a tenth of a trial's 95th
+/// percentile.
+bool Loop::shift_pays(const Trial& trial, double p95_um, double effect) {
+  const JudgedErrors expected = errors_after_shift(trial, effect);
+  return p95_of(expected.error_um, expected.area_mm2) < (1 - kMinFall) * p95_um;
 }
 
 /// Returns whether the best round, which is not within tolerance, is expected to come within it with the fraction

@@ -19,8 +19,11 @@ using simulate::SimulatedProgram;
 
 namespace {
 
-constexpr double kSpacing_mm = 0.4;  // between points of a long line
-constexpr double kForeign = 0.2;     // of the area, cut by another row than it should be: expected_errors are used
+constexpr double kSpacing_mm = 0.4;       // between points of a long line
+constexpr double kBoundCost = 0.1;        // of the 95th percentile, for making no place worse than given
+constexpr double kBoundRoom_mm = 0.0002;  // by which a fit stays within what is no worse than given
+constexpr double kOnePlace_mm = 0.02;     // smoothing of a shift that may do almost anything
+constexpr double kForeign = 0.2;          // of the area, cut by another row than it should be: expected_errors are used
 
 /// Largest default depth limit: what the model can deflect, or the thickness of the stock.
 double deepest_limit_um(const removal::Stock& blank) {
@@ -92,8 +95,9 @@ void Loop::start(CompensationResult& out) {
   reach_ = reach_of(*now_->path, setup_.program.moves, given->observed, given->surface, setup_.own_stamps());
   given->observed.reach = reach_;
   if (foreign_fraction(given->observed) > kForeign) expect_hidden_rows(*given);
-  last_ = best_ = allowed_ = given_trial_ = given;
   first_observed_ = given->observed;
+  choose_bounds(*given);
+  last_ = best_ = allowed_ = given_trial_ = given;
   out.reference = job_.compensation.reference;
   out.own_depth_limit = job_.compensation.depth_limit_um().has_value();
   depth_limit_um_ = job_.compensation.depth_limit_um().value_or(0);
@@ -118,6 +122,45 @@ void Loop::look_out(CompensationResult& out) {
   const JudgedErrors left = errors_after_shift(*given_trial_, 1);
   out.outlook = {out.rounds.front().error_um.p95, p95_of(left.error_um, left.area_mm2)};
   if (options_.outlook) options_.outlook(out.outlook);
+}
+
+/// No place may become worse than given. Where that would raise the 95th percentile by more than a tenth, as where the
+/// cutter's bow leaves both signs at every place of the path, a place may reach what no shift of its own could remove.
+void Loop::choose_bounds(Trial& given) {
+  const std::size_t count = given.observed.points.size();
+  const auto p95_within = [&](std::vector<double> bound_mm) {
+    bound_mm_ = std::move(bound_mm);
+    given.observed.set_bounds(bound_mm_);
+    const JudgedErrors left = errors_after_shift(given, 1);
+    return p95_of(left.error_um, left.area_mm2);
+  };
+  const double free_um = p95_within(std::vector<double>(count, std::numeric_limits<double>::infinity()));
+  std::vector<double> strict;
+  for (const Observation& o : given.observed.points)
+    strict.push_back(std::max(not_worse_mm(o.error_mm, tolerance_mm()) - kBoundRoom_mm, kBoundRoom_mm));
+  if (p95_within(strict) <= std::max((1 + kBoundCost) * free_um, 1000 * tolerance_mm())) return;
+  const std::vector<double> bow = bounds_of_bow(given);
+  for (std::size_t i = 0; i < count; ++i) bound_mm_[i] = std::max(strict[i], bow[i]);
+  given.observed.set_bounds(bound_mm_);
+}
+
+/// What the best shift of each place by itself leaves, one per point of the surface.
+std::vector<double> Loop::bounds_of_bow(const Trial& given) {
+  std::vector<std::size_t> index;
+  std::vector<Observation> judged;
+  for (std::size_t i = 0; i < given.observed.points.size(); ++i) {
+    if (!given.observed.judged(i) || !given.observed.compensated[i]) continue;
+    index.push_back(i);
+    judged.push_back(given.observed.points[i]);
+  }
+  FitShiftOptions free = fit_options();
+  free.bounded = false;
+  free.max_shift_mm = std::numeric_limits<double>::infinity();
+  free.smoothing_mm = kOnePlace_mm;
+  const std::vector<double> left_mm = left_by_shift_mm(*now_->path, judged, free);
+  std::vector<double> out(given.observed.points.size(), 0.0);
+  for (std::size_t k = 0; k < index.size(); ++k) out[index[k]] = std::abs(left_mm[k]);
+  return out;
 }
 
 void Loop::read_given(const simulate::Prediction& prediction, CompensationResult& out) {

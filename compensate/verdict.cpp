@@ -35,6 +35,8 @@ const char* words_of(const CauseFigure& figure) {
       return "could still be corrected by a shift";
     case Cause::guard:
       return "is given up to keep the depth limit";
+    case Cause::bounded:
+      return "is given up so that no place becomes worse than given";
     case Cause::limited:
       return "is limited by max_shift_mm";
     case Cause::short_range:
@@ -57,6 +59,8 @@ double part_of(const ErrorSplit& s, Cause cause) {
       return s.correctable_um;
     case Cause::guard:
       return s.guard_um;
+    case Cause::bounded:
+      return s.bounded_um;
     case Cause::limited:
       return s.limited_um;
     case Cause::short_range:
@@ -84,8 +88,9 @@ double fraction_in_band(const std::vector<double>& error_um, const std::vector<d
   return whole > 0 ? inside / whole : 1.0;
 }
 
-constexpr std::array kCauses{Cause::correctable, Cause::guard, Cause::limited, Cause::short_range,
-                             Cause::opposed,     Cause::tip,   Cause::bow,     Cause::not_compensated};
+constexpr std::array kCauses{Cause::correctable, Cause::guard,       Cause::bounded,
+                             Cause::limited,     Cause::short_range, Cause::opposed,
+                             Cause::tip,         Cause::bow,         Cause::not_compensated};
 
 }  // namespace
 
@@ -222,6 +227,10 @@ std::vector<std::string> remedies_of(const CauseFigure& figure, const Tried& tri
       break;
     case Cause::guard:
       limits(kOvercutKey, kProfileKey);
+      lower_feed("a lower feed");
+      break;
+    case Cause::bounded:
+      out.push_back("a shorter tool");
       lower_feed("a lower feed");
       break;
     case Cause::limited:

@@ -133,7 +133,7 @@ camber::PredictResult predict(const py::object& job, bool feed, const std::optio
 
 camber::CompensateResult compensate(const py::object& job, const std::vector<std::string>& uncertainty,
                                     const std::optional<Path>& measured, const std::optional<Path>& measured_program,
-                                    const std::vector<double>& check_voxels_mm,
+                                    const std::vector<double>& check_voxels_mm, const std::vector<std::string>& levers,
                                     const std::optional<double>& time_budget_percent, bool keep_anyway, bool header,
                                     bool header_hash, const std::optional<Path>& output, const py::object& progress,
                                     bool strict, int threads) {
@@ -143,6 +143,7 @@ camber::CompensateResult compensate(const py::object& job, const std::vector<std
       .measured = measured ? measured->string() : std::string(),
       .measured_program = measured_program ? measured_program->string() : std::string(),
       .check_voxels_mm = check_voxels_mm,
+      .levers = levers,
       .time_budget_percent = time_budget_percent,
       .keep_anyway = keep_anyway,
       .header = header,
@@ -232,8 +233,9 @@ void add_functions(py::module_& module) {
              "Cutting force, deflection and form error of a job.");
   module.def("compensate", compensate, "job"_a, py::kw_only(), "uncertainty"_a = std::vector<std::string>(),
              "measured"_a = py::none(), "measured_program"_a = py::none(), "check_voxels_mm"_a = std::vector<double>(),
-             "time_budget_percent"_a = py::none(), "keep_anyway"_a = false, "header"_a = false, "header_hash"_a = false,
-             "output"_a = py::none(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
+             "levers"_a = std::vector<std::string>(), "time_budget_percent"_a = py::none(), "keep_anyway"_a = false,
+             "header"_a = false, "header_hash"_a = false, "output"_a = py::none(), "progress"_a = py::none(),
+             "strict"_a = false, "threads"_a = 0,
              "Compensates the program of a job: shifts its path against the form error.");
   module.def("verify", verify, "place"_a, py::kw_only(), "progress"_a = py::none(), "strict"_a = false, "threads"_a = 0,
              "Judges a program that compensate has written again, from its text.");

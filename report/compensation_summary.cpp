@@ -19,6 +19,7 @@ Json split(const compensate::ErrorSplit& s) {
           {"correctable_p95", s.correctable_p95_um},
           {"correctable_max", s.correctable_max_um},
           {"guard", s.guard_um},
+          {"bounded", s.bounded_um},
           {"limited", s.limited_um},
           {"not_correctable", s.not_correctable_um()},
           {"short_range", s.short_range_um},
@@ -176,6 +177,8 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["better_than_given"] = c.better;
   j["achievable_um"] = {{"given_p95", c.outlook.given_p95_um}, {"p95", c.outlook.achievable_p95_um}};
   j["levers_used"] = levers_used(c);
+  j["worse_than_given"] = {
+      {"points", c.worse.points}, {"area_share", c.worse.area_fraction}, {"max_um", c.worse.max_um}};
   j["depth_limit_um"] = c.depth_limit_um;
   j["depth_limit_given"] = c.own_depth_limit;
   j["unseen_mm2"] = c.unseen_mm2;
@@ -258,6 +261,7 @@ std::string split_text(const compensate::ErrorSplit& before, const compensate::E
   };
   row("  a shift can correct", before.correctable_um, after.correctable_um);
   row("  given up to keep the depth limit", before.guard_um, after.guard_um);
+  row("  given up to make no place worse", before.bounded_um, after.bounded_um);
   row("  limited by max_shift_mm", before.limited_um, after.limited_um);
   row("  no shift can correct", before.not_correctable_um(), after.not_correctable_um());
   row("    along the cutter: helix bow", before.bow_um, after.bow_um);
@@ -305,6 +309,13 @@ std::string levers_text(const compensate::CompensationResult& c) {
   const double percent = c.feed_before.time_s > 0 ? 100 * extra_s / c.feed_before.time_s : 0;
   out += fmt::format("; {:+.1f} s ({:+.1f} %)\n", extra_s, percent);
   return c.feed_unusable ? out + "lower feeds were not tried: no feed of these moves can be changed\n" : out;
+}
+
+/// Empty where no place is worse.
+std::string worse_text(const compensate::WorsePlaces& worse) {
+  if (worse.points == 0) return {};
+  return fmt::format("worse than given and over the tolerance: {} points ({:.2g} % of the area), by up to {:.1f} um\n",
+                     worse.points, 100 * worse.area_fraction, worse.max_um);
 }
 
 /// Machine time against error; empty where no lever takes time.
@@ -391,8 +402,8 @@ const char* reason(compensate::Stop stop) {
 std::string compensate_text(const compensate::CompensationResult& c, double compute_s) {
   std::string out = levers_text(c) + rounds_text(c) + time_points_text(c) + passes_text(c);
   fmt::format_to(std::back_inserter(out), "stopped: {}\n", reason(c.stop));
-  out += plain_figures_text(c) + split_text(c.split_before, c.split_after) + safety_text(c) + path_text(c) +
-         checks_text(c);
+  out += worse_text(c.worse) + plain_figures_text(c) + split_text(c.split_before, c.split_after) + safety_text(c) +
+         path_text(c) + checks_text(c);
   const auto& operations = c.finishing.operations;
   for (const auto& o : operations)
     if (operations.size() > 1 || o.compensated_moves < o.moves)

@@ -16,6 +16,7 @@ TextTable split_table(const compensate::CompensationResult& c) {
   using Split = compensate::ErrorSplit;
   add("correctable by a shift of the path", &Split::correctable_um);
   add("given up to keep the depth limit", &Split::guard_um);
+  add("given up so that no place becomes worse than given", &Split::bounded_um);
   add("needs a shift over max_shift_mm", &Split::limited_um);
   add("near the axis of a round tip", &Split::tip_um);
   add("differs along the cutter profile (helix bow)", &Split::bow_um);

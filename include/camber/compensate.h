@@ -15,6 +15,9 @@ struct CompensateOptions {
   std::string measured{};                  ///< points measured on a part, CSV; empty: none
   std::string measured_program{};          ///< program that the measured part was cut with; empty: the job's program
   std::vector<double> check_voxels_mm{};   ///< predict both programs again on these grids
+  /// What may change, instead of [compensation] levers: "shift" and of "feed" and "passes" those wanted; empty: the
+  /// job's.
+  std::vector<std::string> levers{};
   /// Limit of the levers feed and passes ([compensation] levers): the least error within so much more machine time,
   /// in percent; not given: as much as the tolerance takes.
   std::optional<double> time_budget_percent{};

@@ -2,6 +2,7 @@
 #include "compensate/choice.h"
 
 #include <array>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,13 @@ TEST(ChooseRound, MayLieAsDeepAsTheGivenProgramWhereNoneKeepsTheLimit) {
   EXPECT_EQ(choose_round(kRounds, 5), 1u);
   constexpr std::array<RoundFigures, 3> kWithin{{{9, 20, 12}, {5, 10, 11}, {8, 18, 4}}};
   EXPECT_EQ(choose_round(kWithin, 5), 2u) << "within the limit comes first";
+}
+
+TEST(ChooseRound, OfTwoRoundsAlikeTheOneThatMakesLessWorseIsTaken) {
+  const RoundFigures given{20, 40, 5};
+  EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {5, 10, 2, false, 3}, {5.2, 10.4, 2, false, 1}}, 8), 2u);
+  EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {5, 10, 2, false, 3}, {6, 12, 2, false, 1}}, 8), 1u);
+  EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {6, 12, 2, false, 1}, {5, 10, 2, false, 3}}, 8), 2u);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ machine::Job slope_job(const std::filesystem::path& folder, Diagnostics& diagnos
   std::ofstream(job.program) << rows_to_and_fro();
   job.stock.box = machine::Box{{0, 0.05, -1}, {5, 1.2, 1.6}};  // no wider than the rows
   job.simulation.coupling = machine::Coupling::rigid;          // the judge's bending does not thin chips
-  job.compensation.tolerance_um = 0.1;
+  job.compensation.tolerance_um = 5;
   job.compensation.levers = {machine::Lever::shift};
   return job;
 }

@@ -95,6 +95,24 @@ TEST(FitShift, MovesThePathAgainstASmoothError) {
   }
 }
 
+/// At each place errors of 20 and 4 um: the least squares take their mean, which would leave the second one -8.
+TEST(FitShift, KeepsBoundsThatTheLeastSquaresWouldExceed) {
+  const auto program = line_program(20);
+  std::vector<Observation> seen;
+  ShiftPath path(program, std::vector<bool>(20, true), 1.0);
+  for (const double error_mm : {0.020, 0.004})
+    for (Observation o : observe(path, 20, [&](double) { return error_mm; })) {
+      o.bound_mm = error_mm + 0.001;
+      seen.push_back(o);
+    }
+  const auto middle = [&] { return path.shift_at(path.find(10, 0.5)).z(); };
+  fit_shift(path, seen, {});
+  EXPECT_NEAR(middle(), -0.012, 1e-4);
+  path.set_shifts(std::vector<Vec3>(path.points().size(), Vec3::Zero()));
+  fit_shift(path, seen, {.bounded = true});
+  EXPECT_NEAR(middle(), -0.009, 2.5e-4) << "4 - 9 = -5 um";
+}
+
 TEST(FitShift, LeavesTheChainsFirstPointWhereTheRapidEnds) {
   const auto program = line_program(5);
   ShiftPath path(program, std::vector<bool>(5, true), 1.0);

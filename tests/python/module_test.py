@@ -147,6 +147,13 @@ class Inputs(unittest.TestCase):
             camber.compensate(job, output=job.program_path)
         self.assertEqual(raised.exception.id, "output-is-input")
 
+    def test_levers_of_other_names_raise(self):
+        with self.assertRaises(camber.InputError) as raised:
+            camber.compensate(camber.read_job(SAMPLE / "job.toml"), levers=["shift", "speed"])
+        self.assertEqual(raised.exception.id, "value-choice")
+        self.assertEqual(raised.exception.message, 'compensate: levers names "speed"; a list of "shift", "feed" and '
+                                                   '"passes" was expected')
+
     def test_a_job_may_be_read_before_its_program_is_made(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "job.toml")
