@@ -247,12 +247,16 @@ std::string material_text(const std::string& chosen, const nc::Summary& summary,
   return out + assumed_line(assumed);
 }
 
+bool turns_the_tool(const JobProposal& proposal) {
+  return proposal.summary.rotary > 0 || proposal.summary.tilted_frame > 0;
+}
+
 /// A class of machines that can run the program.
 std::string usual_machine(const JobProposal& proposal) {
   static const std::regex kRouter(
       R"(VECTRIC|WINCNC|CAMASTER|GRBL|SHAPEOKO|CARBIDE|STOCKMIN|X-?CARVE|ONEFINITY|MACH ?[23]|EASEL|ESTLCAM|OPENBUILDS|LONGMILL)",
       std::regex::icase);
-  if (proposal.summary.rotary > 0 || proposal.summary.tilted_frame > 0) return "five-axis-trunnion";
+  if (turns_the_tool(proposal)) return "five-axis-trunnion";
   double rpm = 0, feed_mm_per_min = 0;
   for (const auto& use : proposal.summary.tools) {
     if (!use.spindle_speed_rpm.empty()) rpm = std::max(rpm, use.spindle_speed_rpm.max);
@@ -294,13 +298,14 @@ double allowance_mm(const std::optional<StockProposal>& stock) {
   return stock && stock->allowance_mm > 0 ? std::max(stock->allowance_mm, 2 * usual_voxel_mm(stock)) : 0;
 }
 
-std::string simulation_text(const std::optional<StockProposal>& stock) {
+std::string simulation_text(const std::optional<StockProposal>& stock, bool turned) {
   const double voxel = usual_voxel_mm(stock);
   std::string out = "\n[simulation]\n" + line(fmt::format("voxel_mm = {}", decimal(voxel)),
                                               "by the blank's size; for finishing half the allowance or less");
-  if (stock && (stock->in_the_way || stock->told.empty()))
-    out += line("collisions = \"warning\"",
-                stock->told.empty() ? "until the blank is right" : "rapids run through the blank");
+  if (stock && (turned || stock->in_the_way || stock->told.empty()))
+    out += line("collisions = \"warning\"", turned                ? "until the machine and the blank are yours"
+                                            : stock->told.empty() ? "until the blank is right"
+                                                                  : "rapids run through the blank");
   return out;
 }
 
@@ -329,7 +334,7 @@ std::string job_text(const JobProposal& proposal) {
   out += line(fmt::format("# operations = {{ tools = [{}] }}", cutting), "only these are simulated and compensated");
   out += tools + material_text(proposal.material, proposal.summary, by_number) + "\n[stock]\n" +
          stock_text(proposal.summary, stock, allowance_mm(stock));
-  out += simulation_text(stock) + "\n[compensation]\n";
+  out += simulation_text(stock, turns_the_tool(proposal)) + "\n[compensation]\n";
   out += line("tolerance_um = 5.0", "95 % of the surface; or profile_um = [-5, 10], the band that the drawing gives");
   return out + "max_shift_mm = 0.1\n";
 }

@@ -28,7 +28,8 @@ nc::InterpreterOptions options_of(nc::InterpreterOptions options, const machine:
   if (job && !options.inch) options.inch = job->inch;
   if (!machine) return options;
   options.rotary_axes = kinematics::rotary_options(*machine);
-  if (job && machine::is_preset(machine->path)) {  // as the commands that cut read it; what is given counts before
+  if (job && !options.rotary_axes.empty() &&
+      machine::is_preset(machine->path)) {  // as the commands that cut read it; what is given counts before
     const nc::InterpreterOptions assumed = simulate::interpreter_options(*job, true);
     options.work_offsets_mm.insert(assumed.work_offsets_mm.begin(), assumed.work_offsets_mm.end());
     options.tool_offsets.insert(assumed.tool_offsets.begin(), assumed.tool_offsets.end());

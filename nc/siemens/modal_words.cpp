@@ -22,7 +22,6 @@ BlockRunner::BlockRunner(const Program& program, const InterpreterOptions& optio
   start_open_ = !options.rotary_axes.empty();
   state_.inch = options.inch.value_or(false);
   unit_given_ = options.inch.has_value();
-  for (const auto& [number, offset] : options.tool_offsets) tools_.reserve(number);
   for (const Word& w : program.words)
     if (w.letter == 'T' && w.value >= 0 && w.value < 1e6) tools_.reserve(static_cast<int>(w.value));
   update_frame();
