@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "nc/mode_words.h"
+
 namespace camber::feedmodel {
 namespace {
 
@@ -25,6 +27,17 @@ constexpr std::array<ContouringCode, 6> kContouring{{{"", ""},
                                                      {"cycle32", "CYCL DEF 32"}}};
 constexpr std::string_view kAnyContouring = "high_speed_contouring";
 
+/// Sets that say how corners are passed, instead of the code's own meaning.
+constexpr std::array<std::string_view, 5> kPathCodes{"g61", "g61_1", "g62", "g63", "g64"};
+
+/// Sets of a code that says more than the contouring it switches on: CYCLE832 for finishing, HSC-MODE of cycle 32.
+bool has_finer_set(const nc::ModalState& state, const machine::Machine& machine) {
+  return std::ranges::any_of(machine.modes, [&](const auto& mode) {
+    return mode.first.starts_with(kContouring[static_cast<std::size_t>(state.contouring)].set) &&
+           (state.mode_words & nc::mode_word_bit(mode.first)) != 0;
+  });
+}
+
 const ContouringCode& contouring_of(const nc::ModalState& state) {
   return kContouring[static_cast<std::size_t>(state.contouring)];
 }
@@ -40,7 +53,8 @@ void unknown_modes(const nc::ModalState& state, const machine::Machine& machine,
   };
   const ContouringCode& contouring = contouring_of(state);
   const bool any = state.high_speed_contouring && has_set(machine, kAnyContouring);
-  if (state.contouring != Contouring::none && !any && !has_set(machine, contouring.set))
+  if (state.contouring != Contouring::none && !any && !has_set(machine, contouring.set) &&
+      !has_finer_set(state, machine))
     add(contouring.text, "high-speed contouring",
         fmt::format("[control.mode.{}]{}", contouring.set,
                     state.high_speed_contouring ? fmt::format(" or [control.mode.{}]", kAnyContouring) : ""));
@@ -59,6 +73,7 @@ bool selects(const nc::ModalState& state, std::string_view name) {
   if (name == "g62") return state.path_g == 62;
   if (name == "g63") return state.path_g == 63;
   if (name == "g64") return state.path_g == 64;
+  if ((state.mode_words & nc::mode_word_bit(name)) != 0) return true;
   return state.contouring != Contouring::none && contouring_of(state).set == name;
 }
 
@@ -85,7 +100,7 @@ machine::AccelerationTimes acceleration_law_of(const machine::Machine& machine, 
 
 nc::PathControl path_control_of(const machine::Machine& machine, const nc::ModalState& state) {
   for (const auto& [name, settings] : machine.modes)
-    if (name.starts_with("g6") && selects(state, name)) return nc::PathControl::blend;
+    if (std::ranges::find(kPathCodes, name) != kPathCodes.end() && selects(state, name)) return nc::PathControl::blend;
   const machine::ControlKind& kind = machine.control.kind;
   if (state.path_control == nc::PathControl::exact_path && kind.g61_stops) return nc::PathControl::exact_stop;
   const bool mode_only = state.path_control == nc::PathControl::exact_stop && !kind.g61_1_stops;

@@ -11,7 +11,8 @@
 namespace camber::feedmodel {
 
 /// Returns whether a modal state selects the parameter set of this name: "g05_1_q1", "g05_p10000", "g08_p1" (any of
-/// these: "high_speed_contouring"), "cycle832", "g61", "g61_1", "g62", "g63", "g64".
+/// these: "high_speed_contouring"), "cycle832", "g61", "g61_1", "g62", "g63", "g64", and the words of
+/// nc/mode_words.h.
 bool selects(const nc::ModalState& state, std::string_view name);
 
 /// Returns the index into Machine::modes of the first of its parameter sets that the state selects, plus 1; 0: none,

@@ -24,9 +24,15 @@ inline constexpr NumberRange kBlockCount{.min = 0, .max = 1e6, .whole = true};
 
 /// Parameter sets of a control, by what selects them; the first that a program's codes select counts.
 /// high_speed_contouring: any of the first three, where it has no set for itself.
-inline constexpr std::array<std::string_view, 11> kModeNames{
-    "g05_1_q1", "g05_p10000", "g08_p1", "cycle832", "cycle32", "high_speed_contouring",
-    "g61",      "g61_1",      "g62",    "g63",      "g64"};
+inline constexpr std::array<std::string_view, 42> kModeNames{
+    "g05_1_q1", "g05_p10000", "g08_p1", "cycle832_finish", "cycle832_semifin", "cycle832_rough", "cycle832",
+    "cycle32_finish", "cycle32_rough", "cycle32", "high_speed_contouring", "m120",
+    // words of Sinumerik programs
+    "dynfinish", "dynprec", "dynsemifin", "dynrough", "dynpos", "dynnorm", "compcad", "compsurf", "compcurv",
+    "comppath", "compon", "brisk", "soft", "drive", "ffwof", "ffwon", "g601", "g602", "g603", "g641", "g642", "g643",
+    "g644", "g645", "g646",
+    //
+    "g61", "g61_1", "g62", "g63", "g64"};
 
 /// Keys of a parameter set beside those of [control]: its own acceleration law.
 inline constexpr std::array kModeLawKeys{

@@ -265,6 +265,13 @@ corner = { law = "blend", tolerance_mm = 0.1 }  # 0.01 to 0.2: tolerance of CYCL
 acceleration_law = "bell"
 bell_time_ms = 30.0                     # 10 to 80: estimate
 
+[control.mode.brisk]
+acceleration_law = "linear"             # linear: no limit of jerk; as without BRISK and SOFT (MD20150)
+
+[control.mode.soft]
+acceleration_law = "bell"
+bell_time_ms = 40.0                     # 15 to 100: estimate; twice acceleration over jerk (MD32431)
+
 [axis.x]
 max_velocity_mm_per_min = 40000.0       # 20000 to 60000: data sheets of machines with this control
 max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate

@@ -42,10 +42,11 @@ struct ModalState {
   bool absolute_arc_centre = false;    ///< G90.1
   bool high_speed_contouring = false;  ///< G08 P1, G05 P10000, G05.1 Q1
   Contouring contouring = Contouring::none;
-  std::uint8_t path_g = 0;     ///< 61 (G61, G61.1), 62, 63 or 64, as the program says; 0: none so far
-  std::uint8_t plane_g = 17;   ///< 17, 18 or 19
-  bool cutter_radius = false;  ///< G41, G42 with a radius other than zero: the path was computed
-  std::uint32_t frame = 0;     ///< index into Interpretation::frames
+  std::uint32_t mode_words = 0;  ///< SOFT, DYNFINISH, G642 ...: bits of kModeWords (nc/mode_words.h)
+  std::uint8_t path_g = 0;       ///< 61 (G61, G61.1), 62, 63 or 64, as the program says; 0: none so far
+  std::uint8_t plane_g = 17;     ///< 17, 18 or 19
+  bool cutter_radius = false;    ///< G41, G42 with a radius other than zero: the path was computed
+  std::uint32_t frame = 0;       ///< index into Interpretation::frames
   TipControl tip_control = TipControl::off;
   WorkFrame work_frame = WorkFrame::machine;
   /// Gauge line to tip, where G43 with a known length is active; 0 without G43. Not given: not known. Only for

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "nc/canned_cycles.h"
 #include "nc/heidenhain/klartext.h"
+#include "nc/mode_words.h"
 
 namespace camber::nc::heidenhain {
 namespace {
@@ -220,6 +221,7 @@ bool Klartext::begins_number_behind(Cursor at) {
 void Klartext::set_tolerance(int part, Cursor at) {
   if (part == 0) {  // CYCL DEF 32.0 alone resets it; 32.1 sets it
     state_.contouring = Contouring::none;
+    state_.mode_words &= ~mode_words_of_group(1);
     state_.blend_tolerance_mm = -1;
     state_changed_ = true;
     return;
@@ -234,6 +236,10 @@ void Klartext::set_tolerance(int part, Cursor at) {
     if (tolerance == 0) return;
     state_.contouring = Contouring::cycle32;
     state_.blend_tolerance_mm = tolerance;
+    state_changed_ = true;
+  }
+  if (part == 2 && at.accept("HSC") && at.accept('-') && at.accept("MODE") && at.accept(':') && at.more()) {
+    state_.mode_words = with_mode_word(state_.mode_words, at.peek() == '0' ? "cycle32_finish" : "cycle32_rough");
     state_changed_ = true;
   }
 }

@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "nc/heidenhain/klartext.h"
+#include "nc/mode_words.h"
 
 namespace camber::nc::heidenhain {
 
@@ -263,6 +264,12 @@ void Klartext::run_m(const BlockValues::Function& f) {
       break;  // run_path reads them
     case 89:
       cycle_modal_ = true;
+      break;
+    case 120:
+      state_.mode_words = f.argument && *f.argument == 0 ? state_.mode_words & ~mode_word_bit("m120")
+                                                         : with_mode_word(state_.mode_words, "m120");
+      state_changed_ = true;
+      add_event(EventKind::m_code, f.code);
       break;
     case 103:
       if (f.argument)

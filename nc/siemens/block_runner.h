@@ -138,6 +138,7 @@ class BlockRunner : public SystemValues {
   bool read_m_codes_before();
   bool read_m_codes_after(bool& ends_subprogram);
   void set_contouring();
+  void set_mode_word(std::string_view upper_name);
   void check_letters();
 
   // frames.cpp

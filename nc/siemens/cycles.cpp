@@ -1,11 +1,13 @@
 // Cycles as moves. Parameters as in "Programming cycles externally" (Programming Manual, Work Preparation).
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/units.h"
 #include "nc/frames.h"
+#include "nc/mode_words.h"
 #include "nc/siemens/block_runner.h"
 
 namespace camber::nc::siemens {
@@ -93,6 +95,10 @@ void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
       cycle832_ = kind != 0;
       cycle832_tolerance_mm_ = cycle832_ && call.number(0) > 0 ? call.number(0) * unit_mm() : -1;
       contour_tolerance_mm_ = -1;
+      constexpr std::array<std::string_view, 5> kKinds{"", "CYCLE832_FINISH", "CYCLE832_SEMIFIN", "CYCLE832_ROUGH",
+                                                       "CYCLE832_FINISH"};
+      state_.mode_words &= ~mode_words_of_group(0);
+      if (kind > 0 && kind < 5) set_mode_word(kKinds[static_cast<std::size_t>(kind)]);
       set_contouring();
       break;
     }

@@ -1,13 +1,20 @@
 // Words that change the state of the control.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "nc/mode_words.h"
 #include "nc/siemens/block_runner.h"
 
 namespace camber::nc::siemens {
+namespace {
+
+constexpr std::uint8_t kCompressorGroup = 4, kRoundingGroup = 8;  // of kModeWords
+
+}  // namespace
 
 BlockRunner::BlockRunner(const Program& program, const InterpreterOptions& options, Reporter& report,
                          Interpretation& out)
@@ -98,11 +105,15 @@ void BlockRunner::set_command(const WordRow& row, std::uint32_t offset) {
     case Does::transform_off:
       set_tip_control(TipControl::off, "TRAFOOF", offset);
       return;
+    case Does::mode_word:
+      return set_mode_word(row.name);
     case Does::contour_mode:
       compressor_ = true;
+      set_mode_word(row.name);
       return set_contouring();
     case Does::contour_mode_off:
       compressor_ = false;
+      state_.mode_words &= ~mode_words_of_group(kCompressorGroup);
       return set_contouring();
     case Does::home:
       go_home(row, offset, place_of_block_);
@@ -110,6 +121,15 @@ void BlockRunner::set_command(const WordRow& row, std::uint32_t offset) {
     default:
       return;
   }
+}
+
+void BlockRunner::set_mode_word(std::string_view upper_name) {
+  std::string name;
+  for (const char c : upper_name) name += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::uint32_t words = with_mode_word(state_.mode_words, name);
+  if (words == state_.mode_words) return;
+  state_.mode_words = words;
+  change_state();
 }
 
 void BlockRunner::set_contouring() {
@@ -216,6 +236,8 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     const bool stops = number == 60;
     state_.path_control = stops ? PathControl::exact_stop : PathControl::blend;
     state_.path_g = stops ? 61 : 64;
+    state_.mode_words &= ~mode_words_of_group(kRoundingGroup);
+    set_mode_word(fmt::format("G{}", number));
     set_contouring();
   };
   switch (g) {
@@ -275,7 +297,7 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     case 601:
     case 602:
     case 603:
-      return;
+      return set_mode_word(fmt::format("G{}", g));
     case 641:
     case 642:
     case 643:

@@ -60,6 +60,7 @@ enum class Does : std::uint8_t {
   transform_off,  // TRAFOOF
   contour_mode,   // COMPON ...
   contour_mode_off,
+  mode_word,  // SOFT ...: nc/mode_words.h
   cycle832,
   cycle800,
   drilling,        // CYCLE81 ...

@@ -136,6 +136,29 @@ TEST(Modes, EachCodeHasItsOwnSet) {
     EXPECT_NEAR(cycle_time(zigzag(codes[i]), m).all.average_feed_mm_per_s(), 4.06 / (0.1 * (i + 1)), 0.5) << codes[i];
 }
 
+/// A word of a Sinumerik program selects the set of its name; CYCLE832 counts before it, with its kind before without.
+TEST(Modes, WordsOfSiemensProgramsHaveSetsOfTheirNames) {
+  const machine::Machine m = machine_of(
+      "[control.mode.soft]\nblock_time_ms = 1\n[control.mode.cycle832]\nblock_time_ms = 2\n"
+      "[control.mode.cycle832_rough]\nblock_time_ms = 3\n[control.mode.g642]\nblock_time_ms = 4\n");
+  const auto block_time_ms = [&](const std::string& words) {
+    Diagnostics diagnostics;
+    const nc::Program program =
+        nc::read_program(SourceText("p.mpf", "G710 G0 X0 Y0 Z0\n" + words + "\nG1 X1 F100\nM30\n"), diagnostics);
+    const nc::Interpretation moves = nc::interpret(program, {}, diagnostics);
+    EXPECT_TRUE(diagnostics.all().empty()) << words;
+    return 1000 * settings_of(m, moves.state_of(moves.moves.back())).block_time_s;
+  };
+  EXPECT_NE(block_time_ms("BRISK"), 1);
+  EXPECT_DOUBLE_EQ(block_time_ms("SOFT"), 1);
+  EXPECT_NE(block_time_ms("SOFT BRISK"), 1);
+  EXPECT_DOUBLE_EQ(block_time_ms("SOFT G642"), 1);
+  EXPECT_DOUBLE_EQ(block_time_ms("G642"), 4);
+  EXPECT_DOUBLE_EQ(block_time_ms("SOFT\nCYCLE832(0.1,_FINISH,1)"), 2);
+  EXPECT_DOUBLE_EQ(block_time_ms("SOFT\nCYCLE832(0.1,_ROUGH,1)"), 3);
+  EXPECT_DOUBLE_EQ(block_time_ms("SOFT\nCYCLE832(0.1,_ROUGH,1)\nCYCLE832()"), 1);
+}
+
 /// Mazak's G61.1 is a mode (high-accuracy shape correction); without a set for it [control] counts, and not a stop.
 TEST(Modes, MazaksG61_1IsNoStop) {
   const std::string text =

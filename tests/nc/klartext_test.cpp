@@ -4,6 +4,7 @@
 #include "base/units.h"
 #include "nc/emit.h"
 #include "nc/language.h"
+#include "nc/mode_words.h"
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {
@@ -218,6 +219,18 @@ TEST(Klartext, ARepetitionOfALabelBehindItIsSaid) {
       said("3 CALL LBL 1 REP 2\n4 L X+5 R0\n5 LBL 1\n6 L X+7 R0\n"),
       Messages{"p.h:4:3: warning: LBL 1 stands behind its CALL LBL REP: the program goes on there, and the blocks "
                "between are left out; a label before it, or CALL LBL without REP, was expected [label]"});
+}
+
+TEST(Klartext, TheHscModeOfCycle32AndM120AreModes) {
+  const Read r = read_lines(with_start(
+      "3 CYCL DEF 32.0 TOLERANCE\n4 CYCL DEF 32.1 T0.03\n5 CYCL DEF 32.2 HSC-MODE:1 TA0.5\n6 L X+1 M120 LA10\n"
+      "7 CYCL DEF 32.0 TOLERANCE\n8 CYCL DEF 32.1 T0.01\n9 CYCL DEF 32.2 HSC-MODE:0\n10 L X+2 M120 LA0\n"
+      "11 CYCL DEF 32.0 TOLERANCE\n12 CYCL DEF 32.1\n13 L X+3\n"));
+  EXPECT_EQ(r.messages, Messages{});
+  const auto words = [&](std::size_t i) { return r.moves.state_of(r.moves.moves.at(i)).mode_words; };
+  EXPECT_EQ(words(1), mode_word_bit("cycle32_rough") | mode_word_bit("m120"));
+  EXPECT_EQ(words(2), mode_word_bit("cycle32_finish"));
+  EXPECT_EQ(words(3), 0U);
 }
 
 TEST(Klartext, RadiusCompensationWithARadiusOfTheProgram) {

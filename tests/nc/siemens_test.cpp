@@ -5,6 +5,7 @@
 
 #include "base/units.h"
 #include "nc/emit.h"
+#include "nc/mode_words.h"
 #include "nc/siemens/words.h"
 #include "test_paths.h"
 #include "tests/nc/siemens_text.h"
@@ -247,6 +248,27 @@ TEST(Siemens, ModesOfTheControl) {
   EXPECT_EQ(state(2).contouring, Contouring::none);
   EXPECT_DOUBLE_EQ(state(3).blend_tolerance_mm, 0.1);
   EXPECT_EQ(state(4).path_control, PathControl::exact_stop);
+}
+
+/// The words of a group replace each other; COMPOF and CYCLE832() end theirs.
+TEST(Siemens, WordsOfTheDynamicsAreModal) {
+  const Read r = read_siemens(
+      "G0 X0 Y0 Z0\nSOFT FFWON COMPCAD DYNFINISH G642\nG1 X1 F100\nBRISK DYNROUGH COMPOF G64 G601\nX2\n"
+      "CYCLE832(0.01,_FINISH,1)\nX3\nCYCLE832(0.1,_ROUGH,1)\nX4\nCYCLE832()\nX5\n");
+  EXPECT_EQ(r.messages, Messages{});
+  const auto words = [&](std::size_t i) {
+    std::string out;
+    for (std::size_t bit = 0; bit < kModeWords.size(); ++bit)
+      if ((r.moves.state_of(r.moves.moves.at(i)).mode_words >> bit & 1) != 0)
+        out += (out.empty() ? "" : " ") + std::string(kModeWords[bit].name);
+    return out;
+  };
+  EXPECT_EQ(words(0), "");
+  EXPECT_EQ(words(1), "dynfinish compcad soft ffwon g642");
+  EXPECT_EQ(words(2), "dynrough brisk ffwon g601");
+  EXPECT_EQ(words(3), "cycle832_finish dynrough brisk ffwon g601");
+  EXPECT_EQ(words(4), "cycle832_rough dynrough brisk ffwon g601");
+  EXPECT_EQ(words(5), words(2));
 }
 
 TEST(Siemens, ToleranceOfThePathByCtol) {
