@@ -9,8 +9,6 @@
 
 namespace camber::compensate {
 
-using simulate::SimulatedProgram;
-
 namespace {
 
 constexpr double kMinGain = 0.05;   // a round that is expected to lower the rms by less is not worth a prediction
@@ -154,9 +152,8 @@ void Loop::choose(CompensationResult& out) {
 
 bool Loop::step(CompensationResult& out, double fraction, const Guard* guard) {
   PlannedRound planned = plan_round(fraction, guard);
-  const SimulatedProgram& before = planned.from->emitted ? planned.from->emitted->program : setup_.program;
-  if (planned.from->version == active_ && planned.made->emitted->emission.text == before.text.source.text())
-    return false;
+  const Emitted* before = planned.from->version == active_ ? planned.from->emitted.get() : nullptr;
+  if (before && planned.made->emitted->emission.text == before->emission.text) return false;
   run_round(out, std::move(planned));
   return true;
 }

@@ -20,7 +20,7 @@ using simulate::SimulatedProgram;
 namespace {
 
 constexpr double kSpacing_mm = 0.4;       // between points of a long line
-constexpr double kBoundCost = 0.1;        // of the 95th percentile, for making no place worse than given
+constexpr double kBoundCost = 0.25;       // of the 95th percentile, for making no place worse than given
 constexpr double kBoundRoom_mm = 0.0002;  // by which a fit stays within what is no worse than given
 constexpr double kOnePlace_mm = 0.02;     // smoothing of a shift that may do almost anything
 constexpr double kForeign = 0.2;          // of the area, cut by another row than it should be: expected_errors are used
@@ -124,8 +124,9 @@ void Loop::look_out(CompensationResult& out) {
   if (options_.outlook) options_.outlook(out.outlook);
 }
 
-/// No place may become worse than given. Where that would raise the 95th percentile by more than a tenth, as where the
-/// cutter's bow leaves both signs at every place of the path, a place may reach what no shift of its own could remove.
+/// No place may become worse than given. Where that would raise the 95th percentile by more than a quarter, as where
+/// the cutter's bow leaves both signs at every place of the path, a place may reach what no shift of its own could
+/// remove.
 void Loop::choose_bounds(Trial& given) {
   const std::size_t count = given.observed.points.size();
   const auto p95_within = [&](std::vector<double> bound_mm) {
