@@ -266,7 +266,7 @@ acceleration_law = "bell"
 bell_time_ms = 30.0                     # 10 to 80: estimate
 
 [control.mode.brisk]
-acceleration_law = "linear"             # linear: no limit of jerk; as without BRISK and SOFT (MD20150)
+acceleration_law = "linear"
 
 [control.mode.soft]
 acceleration_law = "bell"
