@@ -199,7 +199,7 @@ std::vector<Vec3> solve(const System& s, const ShiftPath& path, std::span<const 
   constexpr int kSteps = 300;
   constexpr double kClose = 1e-6;
   const Chains chains(s, path);
-  const std::vector<Vec3> apart = chains.solve(s.right);
+  std::vector<Vec3> apart = chains.solve(s.right);
   if (links.empty()) return apart;
   if (x.empty()) x = apart;
   const double whole = dot(s.right, apart);
