@@ -105,7 +105,7 @@ const CHECKS = {
     await page.getByRole('button', { name: 'Save', exact: true }).click();
     await page.waitForFunction(n => Number(document.documentElement.dataset.checked) > n, before + 1, { timeout: 60000 });
     const job = readFileSync(join(folder, 'ball/job.toml'), 'utf8');
-    for (const line of ['allowance_mm = 0.1 ', 'voxel_mm = 0.6 ', 'max_rounds = 1\n', 'coupling = "rigid"\n', 'flutes = 2\n'])
+    for (const line of ['\nallowance_mm = 0.1\n', 'voxel_mm = 0.6 ', 'max_rounds = 1\n', 'coupling = "rigid"\n', 'flutes = 2\n'])
       expect(job.includes(line), `job.toml lacks "${line.trim()}":\n${job}`);
 
     await run(page, 'compensate', { 'keep-anyway': true });
