@@ -530,15 +530,15 @@ void LineParser::parse_for(std::size_t begin) {
   set_flow(FlowKind::for_loop, begin);
   skip_blanks();
   const std::size_t before = out_.items.size();
-  if (upper(peek()) == 'R' && (is_digit(peek(1)) || peek(1) == '[')) {
+  const bool r_parameter = upper(peek()) == 'R' && (is_digit(peek(1)) || peek(1) == '[');
+  const bool named = is_name_start(text_, at_, end_);
+  if (r_parameter || (!named && names_.is_declared(upper(peek())))) {
     parse_letter();
-  } else if (is_name_start(text_, at_, end_)) {
+  } else if (named) {
     Item item;
     item.offset = static_cast<std::uint32_t>(at_);
     item.name = names_.index(read_name());
     parse_assignment(item);
-  } else if (names_.is_declared(upper(peek()))) {
-    parse_letter();
   }
   if (out_.items.size() == before || out_.items.back().kind != ItemKind::assign)
     fail(begin, "syntax", "FOR has no variable; FOR name = first TO last was expected");
