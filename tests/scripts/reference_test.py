@@ -31,6 +31,11 @@ class Reference(unittest.TestCase):
         self.assertIn(before, text)
         file.write_text(text.replace(before, after, 1))
 
+    def assert_stale(self, page):
+        status, out = check(self.root)
+        self.assertEqual(status, 1)
+        self.assertIn("docs/reference/%s: is not what scripts/reference makes" % page, out)
+
     def assert_missing(self, key, path):
         status, out = check(self.root)
         self.assertEqual(status, 1)
@@ -50,15 +55,11 @@ class Reference(unittest.TestCase):
 
     def test_a_new_name_of_a_material(self):
         self.edit("machine/material_presets.cpp", "S45C S48C", "S45C S45CM S48C")
-        status, out = check(self.root)
-        self.assertEqual(status, 1)
-        self.assertIn("docs/reference/materials.md: is not what scripts/reference makes", out)
+        self.assert_stale("materials.md")
 
     def test_a_word_of_sinumerik_that_is_refused(self):
         self.edit("nc/siemens/words.cpp", "Does::chamfer, ", "Does::refused, ")
-        status, out = check(self.root)
-        self.assertEqual(status, 1)
-        self.assertIn("docs/reference/siemens-words.md: is not what scripts/reference makes", out)
+        self.assert_stale("siemens-words.md")
 
     def test_a_code_without_words(self):
         self.edit("nc/modal_codes.cpp", "    Entry{30, {GGroup::motion}},", "    Entry{30, {GGroup::motion}},\n    Entry{35, {GGroup::motion}},")
@@ -66,9 +67,7 @@ class Reference(unittest.TestCase):
 
     def test_a_renamed_number(self):
         self.edit("machine/machine_keys.h", '{"orient_s"', '{"turn_s"')
-        status, out = check(self.root)
-        self.assertEqual(status, 1)
-        self.assertIn("docs/reference/machine.md: is not what scripts/reference makes", out)
+        self.assert_stale("machine.md")
 
     def test_a_number_without_words(self):
         self.edit("machine/machine_keys.h", '{"orient_s", &Spindle::orient_s', '{"turn_s", &Spindle::turn_s')
