@@ -1,14 +1,15 @@
 // The namespace adapt comes before the function of that name: clang takes it in no other order.
-#include "api/commands/adapt.h"
+#include "adapt/adapt.h"
 
 #include "camber/adapt.h"
-
-#include <chrono>
 
 #include "api/job.h"
 #include "api/run.h"
 #include "base/units.h"
+#include "feedmodel/control_options.h"
+#include "feedmodel/fitted_range.h"
 #include "machine/assumptions.h"
+#include "nc/interpreter.h"
 #include "report/adapt_summary.h"
 
 namespace camber {
@@ -42,22 +43,34 @@ AdaptResult result_of(const adapt::AdaptResult& r) {
   return out;
 }
 
+/// Whether the feed model was fitted at such moves.
+void check_range_of(const machine::Job& job, const std::string& text, Diagnostics& diagnostics) {
+  Diagnostics ignored;  // those of the given program were reported already
+  const auto program = nc::read_program(SourceText(job.program, text), ignored);
+  const auto moves = nc::interpret(program, feedmodel::interpreter_options(job.machine, job.inch), ignored);
+  feedmodel::check_range(moves, job.program, job.machine, diagnostics);
+}
+
 }  // namespace
 
-AdaptResult v0::adapt(const Job& job, const AdaptOptions& options, const RunOptions& run_options) {
-  const auto begin = std::chrono::steady_clock::now();
+AdaptResult v0::adapt(const Job& given, const AdaptOptions& options, const RunOptions& run_options) {
   AdaptResult result;
   api::Run run(run_options);
   run.execute([&] {
-    Diagnostics found = job.impl().found;
-    const machine::Job& of = api::programmed(job);
-    const adapt::AdaptResult done = api::adapt_job(
-        of, {.time_limit_s = options.time_limit_s, .sweep = options.sweep, .progress = run.progress()}, found);
-    run.settle(found);
-    const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    Diagnostics found = given.impl().found;
+    const machine::Job& job = api::programmed(given);
+    const adapt::AdaptResult done = adapt::adapt(
+        job, found, {.time_limit_s = options.time_limit_s, .sweep = options.sweep, .progress = run.progress()});
+    check_range_of(job, done.text, found);
+    run.settle_first(found);
+    const double compute_s = run.seconds();
+    const std::vector<std::string> assumed = machine::assumptions(job);
     result = result_of(done);
     result.diagnostics = found.all();
-    result.json = machine::with_assumptions(report::adapt_json(done, *of.adapt, compute_s), machine::assumptions(of));
+    result.json = machine::with_assumptions(report::adapt_json(done, *job.adapt, compute_s), assumed);
+    result.printed = machine::assumptions_text(assumed) + report::adapt_text(done, compute_s);
+    if (options.page)
+      result.page = report::adapt_page(done, *job.adapt, {job.path, job.program, options.output}, api::texts_of(found));
   });
   return result;
 }

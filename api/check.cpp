@@ -1,13 +1,217 @@
 #include "camber/check.h"
 
-#include "api/commands/check.h"
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+
 #include "api/job.h"
+#include "api/prediction.h"
 #include "api/program.h"
-#include "api/run.h"
+#include "api/rotary_program.h"
+#include "base/mesh_file.h"
+#include "base/output_file.h"
+#include "base/temporary_folder.h"
+#include "checks/plausibility.h"
+#include "feedmodel/control_options.h"
+#include "feedmodel/cycle_time.h"
+#include "feedmodel/fitted_range.h"
+#include "kinematics/reference_check.h"
+#include "kinematics/rotary_options.h"
+#include "kinematics/travel_check.h"
 #include "machine/assumptions.h"
+#include "machine/machine_presets.h"
+#include "report/check_summary.h"
+#include "report/joined_json.h"
+#include "report/path_arrays.h"
+#include "report/planned_picture.h"
+#include "report/setup_sheet.h"
+#include "simulate/machine_checks.h"
+#include "simulate/machine_collisions.h"
+#include "simulate/rotary_motion.h"
+#include "simulate/setup_checks.h"
+#include "simulate/thin_walls.h"
 
 namespace camber {
 namespace {
+
+struct CheckAsked {
+  const Program::Impl& program;
+  const machine::Machine* machine = nullptr;  ///< null: none
+  const machine::Job* job = nullptr;          ///< with its machine as `machine`; null: none
+  CheckOptions options{};
+};
+
+struct Checked {
+  nc::Interpretation moves;
+  report::CheckSummary summary;
+};
+
+nc::InterpreterOptions options_as_read(nc::InterpreterOptions options, const machine::Machine* machine,
+                                       const machine::Job* job) {
+  if (job && !options.inch) options.inch = job->inch;
+  if (!machine) return options;
+  options.rotary_axes = kinematics::rotary_options(*machine);
+  if (job && !options.rotary_axes.empty() &&
+      machine::is_preset(machine->path)) {  // as the commands that cut read it; what is given counts before
+    const nc::InterpreterOptions assumed = simulate::interpreter_options(*job, true);
+    options.work_offsets_mm.insert(assumed.work_offsets_mm.begin(), assumed.work_offsets_mm.end());
+    options.tool_offsets.insert(assumed.tool_offsets.begin(), assumed.tool_offsets.end());
+  }
+  return feedmodel::interpreter_options(*machine, options);
+}
+
+/// A program that calls no tool and names no spindle speed runs in air.
+bool is_to_cut(const nc::Interpretation& moves) {
+  return std::ranges::any_of(moves.states, [](const nc::ModalState& s) {
+    return s.tool > 0 || s.spindle_speed_rpm > 0 || s.spindle != nc::SpindleDirection::stopped;
+  });
+}
+
+/// As predict's prepare() up to its sweeps: a height map tells of clearance in seconds. Where none describes the job,
+/// all of it.
+double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
+  const auto check = [&](const simulate::SimulatedProgram& program) {
+    checks::check_program(job, program, diagnostics);
+  };
+  const std::optional<machine::Box> stock = simulate::stock_box(job);
+  if (stock) {
+    Diagnostics of_original;
+    const simulate::Programs programs = simulate::read_programs(
+        job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics});
+    const double bytes = simulate::check_memory_of(job, programs.of_target(), *stock, diagnostics).total();
+    diagnostics.throw_if_errors();
+    const simulate::SimulatedProgram& program = programs.program;
+    if (simulate::check_heights(job, program, programs.original ? &*programs.original : nullptr, diagnostics,
+                                [&](const removal::HeightMap& machined) {
+                                  simulate::suggest_workpiece(job, program, machined, diagnostics);
+                                })) {
+      feedmodel::check_range(program.text_moves(), job.program, job.machine, diagnostics);
+      simulate::check_machine_collisions(job, program.text, program.text_moves(), diagnostics);
+      return bytes;
+    }
+  }
+  Diagnostics of_rest;
+  const double bytes = api::prepare(job, {}, {}, of_rest).setup.target.memory.total();
+  diagnostics = of_rest;
+  return bytes;
+}
+
+/// What predict would say of the job before its cut, as far as it is not said yet. Returns the memory that it needs.
+std::optional<double> add_what_predict_says(machine::Job job, const std::string& program, Diagnostics& found) {
+  job.program = program;
+  Diagnostics of_predict;
+  std::vector<Diagnostic> said;
+  std::optional<double> memory_bytes;
+  try {
+    memory_bytes = memory_where_ready(job, of_predict);
+    said = of_predict.all();
+  } catch (const InputError& refused) {
+    said = refused.diagnostics();
+  }
+  for (const Diagnostic& d : said)
+    if (std::ranges::none_of(found.all(), [&](const Diagnostic& f) {
+          return f.check == d.check && f.message == d.message && f.location.line == d.location.line;
+        }))
+      found.add(d);
+  return memory_bytes;
+}
+
+/// By line and column.
+std::vector<Diagnostic> in_order(std::vector<Diagnostic> list) {
+  std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
+  });
+  return list;
+}
+
+Diagnostics collected(const std::vector<Diagnostic>& list) {
+  Diagnostics out;
+  for (const Diagnostic& d : list) out.add(d);
+  return out;
+}
+
+/// Reads a program as the control of the machine does, where one is given. A job also has its tools, stock and part
+/// checked, and then everything that predict checks before its cut. `read` is called with a program that could be read,
+/// before it is checked against machine and job. Throws InputError.
+Checked check_program(const CheckAsked& asked, Diagnostics& found,
+                      const std::function<void(const nc::Interpretation&)>& read) {
+  const nc::Program& text = asked.program.text;
+  const machine::Machine* machine = asked.machine;
+  const machine::Job* job = asked.job;
+  Checked checked{nc::interpret(text, options_as_read(asked.program.options, machine, job), found), {.text = &text}};
+  found.throw_if_errors();
+  read(checked.moves);
+  if (machine) simulate::check_machine(*machine, text, checked.moves, found);
+  if (machine && machine->kinematics.given()) {
+    api::check_tip_lengths(*machine, text, checked.moves, found);
+    kinematics::check_travel(*machine, text, checked.moves, found);
+    kinematics::check_reference_points(*machine, text, checked.moves, found);
+  }
+  simulate::check_feeds(text, checked.moves, found);
+  if (job)
+    simulate::check_job(*job, text, checked.moves, found);
+  else if (machine || is_to_cut(checked.moves))
+    simulate::check_spindle(text, checked.moves, found);
+  found.throw_if_errors();
+  if (job) checked.summary.memory_bytes = add_what_predict_says(*job, text.source.name(), found);
+  found.throw_if_errors();
+  checked.summary.program = nc::summarize(text, checked.moves);
+  if (machine) checked.summary.feed_meanings = kinematics::feed_meanings(checked.moves, *machine);
+  return checked;
+}
+
+/// As the control of the machine plans it, where a machine is known; the machine itself where rotary axes turn.
+report::CheckPicture picture_of(const nc::Interpretation& moves, const machine::Machine* machine,
+                                const machine::Job* job) {
+  report::CheckPicture picture;
+  const bool turns = !moves.rotary.empty();
+  picture.path = machine && !turns ? report::planned_picture(moves, *machine, report::kMaxPicturePoints)
+                                   : report::program_picture(moves, report::kMaxPicturePoints);
+  if (!machine || !turns || !machine->kinematics.given()) return picture;
+  picture.machine = *machine;
+  if (moves.machine_origin_mm) {
+    picture.track = kinematics::programmed_track(*machine, moves);
+    picture.work_origin_mm = -*moves.machine_origin_mm;
+  } else {
+    // The offset moves the pictures alone, but nobody knows how far X, Y and Z are from the ends of their travel.
+    nc::Interpretation placed = moves;
+    placed.machine_origin_mm = Vec3::Zero();
+    picture.track = kinematics::programmed_track(*machine, placed);
+    for (machine::Axis& axis : picture.machine->axis) axis.travel_mm = machine::Axis{}.travel_mm;
+    picture.offset_assumed = true;
+  }
+  if (job && !job->part.mesh.empty()) picture.part = read_mesh(job->part.mesh);
+  if (job && job->tools.size() == 1) picture.tool_diameter_mm = job->tools.begin()->second.diameter_mm;
+  return picture;
+}
+
+/// The page also shows which axis leaves its travel, and where.
+Checked check_and_draw(const CheckAsked& asked, Diagnostics& found) {
+  const nc::Program& text = asked.program.text;
+  report::CheckSummary before{.text = &text};
+  report::CheckPicture picture;
+  const auto write_page = [&](const report::CheckSummary& summary, const Diagnostics& ordered) {
+    const std::string with = asked.job       ? "with the job " + asked.job->path
+                             : asked.machine ? "on the machine " + asked.machine->path
+                                             : std::string();
+    write_file(asked.options.page, report::check_page(summary, with, ordered, picture));
+  };
+  try {
+    Checked checked = check_program(asked, found, [&](const nc::Interpretation& moves) {
+      if (!asked.options.path.empty())
+        report::write_path_arrays(asked.options.path, report::program_picture(moves, report::kMaxPathPoints));
+      if (asked.options.page.empty()) return;
+      picture = picture_of(moves, asked.machine, asked.job);
+      before.program = nc::summarize(text, moves);
+    });
+    if (!asked.options.page.empty()) write_page(checked.summary, collected(in_order(found.all())));
+    return checked;
+  } catch (const InputError& e) {
+    if (picture.machine) write_page(before, collected(in_order(e.diagnostics())));
+    throw;
+  }
+}
 
 std::optional<Box> box_of(const nc::Extents& e) {
   if (e.empty()) return std::nullopt;
@@ -18,8 +222,8 @@ ToolUse tool_of(const nc::ToolUse& t) {
   return {t.tool, t.line, t.calls, t.cutting_moves, t.cutting_length_mm, t.rapid_length_mm, box_of(t.cutting)};
 }
 
-CheckResult result_of(const nc::Program& text, const api::CheckedProgram& checked, const Diagnostics& found) {
-  const nc::Summary& s = checked.summary;
+CheckResult result_of(const CheckAsked& asked, const report::CheckSummary& summary, const Diagnostics& found) {
+  const nc::Summary& s = summary.program;
   CheckResult out{.blocks = s.blocks,
                   .blocks_with_words = s.blocks_with_words,
                   .rapids = s.rapids,
@@ -33,48 +237,120 @@ CheckResult result_of(const nc::Program& text, const api::CheckedProgram& checke
                   .cutting = box_of(s.cutting),
                   .rapid = box_of(s.rapid)};
   for (const nc::ToolUse& t : s.tools) out.tools.push_back(tool_of(t));
+  const std::vector<std::string> assumed = asked.job       ? machine::assumptions(*asked.job)
+                                           : asked.machine ? machine::assumptions(*asked.machine)
+                                                           : std::vector<std::string>();
   out.diagnostics = found.all();
-  if (checked.memory_bytes) out.memory_GB = *checked.memory_bytes / 1e9;
-  out.json = api::check_json(text, s, found, checked.memory_bytes, checked.feed_meanings);
+  if (summary.memory_bytes) out.memory_GB = *summary.memory_bytes / 1e9;
+  out.json = machine::with_assumptions(report::check_json(summary, found), assumed);
+  out.printed = machine::assumptions_text(assumed) + report::check_text(summary, found);
   return out;
 }
 
-CheckResult checked(const Program& program, const Diagnostics& before, const machine::Machine* machine,
-                    const machine::Job* job, const RunOptions& options) {
+/// `before`: of the machine or the job. Messages are in the order of the file.
+CheckResult checked_in_order(const CheckAsked& asked, const Diagnostics& before, const api::Run& run,
+                             Checked& checked) {
+  Diagnostics found = before;
+  try {
+    found.append(asked.program.found);
+    checked = check_and_draw(asked, found);
+    const Diagnostics ordered = collected(in_order(found.all()));
+    run.settle_first(ordered);
+    return result_of(asked, checked.summary, ordered);
+  } catch (const InputError& e) {
+    throw InputError(in_order(e.diagnostics()));
+  }
+}
+
+CheckResult check_one(const CheckAsked& asked, const Diagnostics& before, const RunOptions& options) {
   CheckResult result;
   api::Run run(options);
   run.execute([&] {
-    Diagnostics found = before;
-    try {
-      found.append(program.impl().found);
-      const auto done = api::check_program(program.impl().text, program.impl().options, machine, job, found);
-      Diagnostics ordered;
-      for (auto& d : api::in_order(found.all())) ordered.add(std::move(d));
-      run.settle(ordered);
-      result = result_of(program.impl().text, done, ordered);
-      const auto assumed = job       ? machine::assumptions(*job)
-                           : machine ? machine::assumptions(*machine)
-                                     : std::vector<std::string>{};
-      result.json = machine::with_assumptions(std::move(result.json), assumed);
-    } catch (const InputError& e) {
-      throw InputError(api::in_order(e.diagnostics()));
-    }
+    Checked checked;
+    result = checked_in_order(asked, before, run, checked);
   });
   return result;
 }
 
-}  // namespace
-
-CheckResult v0::check(const Program& program, const RunOptions& run) {
-  return checked(program, {}, nullptr, nullptr, run);
+/// The rigid sweep of a job's program, saved to `path`: what a check of the next program starts from.
+void save_swept_stock(const machine::Job& job, const std::string& path) {
+  Diagnostics ignored;
+  api::PreparedJob prepared = api::prepare(job, {}, {}, ignored);
+  simulate::sweep_path(prepared.setup.target.blank, job, prepared.setup.program.path, 0);
+  prepared.setup.target.blank.save(path);
 }
 
+std::string sheet_of(const machine::Job& job, const std::vector<Checked>& programs, const Diagnostics& found) {
+  report::SetupSheet sheet{job, {}, {}};
+  for (const Checked& p : programs)
+    sheet.programs.push_back(
+        {*p.summary.text, p.moves, p.summary.program, feedmodel::cycle_time(p.moves, job.machine)});
+  sheet.warnings = api::texts_of(found);
+  return report::setup_sheet_html(sheet);
+}
+
+}  // namespace
+
+CheckResult v0::check(const Program& program, const RunOptions& run) { return check(program, CheckOptions(), run); }
+
 CheckResult v0::check(const Program& program, const Machine& machine, const RunOptions& run) {
-  return checked(program, machine.impl().found, &machine.impl().machine, nullptr, run);
+  return check(program, machine, CheckOptions(), run);
 }
 
 CheckResult v0::check(const Program& program, const Job& job, const RunOptions& run) {
-  return checked(program, job.impl().found, &job.impl().job.machine, &job.impl().job, run);
+  return check_one({program.impl(), &job.impl().job.machine, &job.impl().job}, job.impl().found, run);
+}
+
+CheckResult v0::check(const Program& program, const CheckOptions& options, const RunOptions& run) {
+  return check_one({.program = program.impl(), .options = options}, {}, run);
+}
+
+CheckResult v0::check(const Program& program, const Machine& machine, const CheckOptions& options,
+                      const RunOptions& run) {
+  return check_one({.program = program.impl(), .machine = &machine.impl().machine, .options = options},
+                   machine.impl().found, run);
+}
+
+CheckedJob v0::check_job(const std::string& job_path, const ReadOptions& read, const CheckOptions& options,
+                         const RunOptions& run_options) {
+  CheckedJob out;
+  api::Run run(run_options);
+  run.execute([&] {
+    JobOfPrograms all = read_job_of_programs(job_path);
+    if (!options.program.empty()) all.programs = {options.program};
+    const TemporaryFolder folder;
+    std::vector<Program> texts;
+    std::vector<Checked> programs(all.programs.size());
+    std::string stock;
+    Diagnostics found;
+    for (std::size_t i = 0; i < all.programs.size(); ++i) {
+      CheckOptions own = options;
+      if (i > 0) {
+        // The blank of the next program is what the undeflected tools of this one leave.
+        const std::string left = fmt::format("{}/{}.vdb", folder.path(), i);
+        save_swept_stock(all.of_program(i - 1, stock).impl().job, left);
+        stock = left;
+        own.page.clear();
+        own.path.clear();
+      }
+      const Job one = all.of_program(i, stock);
+      texts.push_back(read_program(all.programs[i], read));
+      const CheckAsked asked{texts.back().impl(), &one.impl().job.machine, &one.impl().job, own};
+      out.programs.push_back(checked_in_order(asked, one.impl().found, run, programs[i]));
+      for (const Diagnostic& d : out.programs.back().diagnostics) found.add(d);
+    }
+    std::vector<std::string> json;
+    for (std::size_t i = 0; i < out.programs.size(); ++i) {
+      json.push_back(out.programs[i].json);
+      out.printed += i > 0 ? "\n" + report::check_text(programs[i].summary, collected(out.programs[i].diagnostics))
+                           : out.programs[i].printed;
+    }
+    out.json =
+        json.size() == 1 ? json.front() : report::join_results(all.job.assumed(), all.programs, json, all.programs);
+    if (options.sheet) out.sheet = sheet_of(all.job.impl().job, programs, found);
+    out.diagnostics = found.all();
+  });
+  return out;
 }
 
 }  // namespace camber

@@ -1,24 +1,104 @@
 // The namespace compensate comes before the function of that name: clang takes it in no other order.
-#include "api/commands/compensate.h"
+#include "compensate/compensate.h"
 
 #include "camber/compensate.h"
 
-#include <chrono>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
-#include "api/error_figures.h"
 #include "api/job.h"
-#include "api/run.h"
+#include "api/prediction.h"
+#include "base/output_file.h"
+#include "base/stage.h"
+#include "compensate/header.h"
+#include "compensate/measured.h"
+#include "compensate/recheck.h"
+#include "compensate/trial.h"
+#include "compensate/verify.h"
+#include "feedmodel/fitted_range.h"
 #include "machine/assumptions.h"
 #include "machine/levers.h"
+#include "nc/interpreter.h"
 #include "report/feature_results.h"
+#include "report/report_data.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
+#include "simulate/rotary_motion.h"
 
 namespace camber {
 namespace {
 
+namespace fs = std::filesystem;
 using compensate::CompensationResult;
+
+nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
+  Diagnostics ignored;  // said already
+  const auto text = nc::read_program(std::move(source), ignored);
+  return nc::interpret(text, simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text)),
+                       ignored);
+}
+
+/// The job as it was measured; the fit goes to `fit`.
+machine::Job as_measured(const machine::Job& job, const CompensateOptions& request, Diagnostics& diagnostics,
+                         const simulate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
+  if (request.measured.empty()) return job;
+  const auto points = compensate::read_measured(request.measured);
+  fit = compensate::fit_measured(job, request.measured, points, request.measured_program, diagnostics, progress);
+  return compensate::softened(job, fit->scale);
+}
+
+std::string header_of(const machine::Job& job, const compensate::CompensationResult& c, bool hash) {
+  const std::string lines = compensate::header_lines(job, c, CAMBER_VERSION);
+  return hash ? lines + "\nINPUTS " + compensate::hash_of_inputs(job) : lines;
+}
+
+/// The job with the levers of the request. Throws InputError.
+machine::Job with_levers(const machine::Job& job, const std::vector<std::string>& names, Diagnostics& diagnostics) {
+  machine::Job out = job;
+  if (names.empty()) return out;
+  const machine::LeverNames read = machine::levers_of(names);
+  for (const std::string& message : read.errors)
+    diagnostics.add({Severity::error, {job.path, 0, 0}, "--levers: " + message, "value-choice", {}});
+  diagnostics.throw_if_errors();
+  out.compensation.levers = read.levers;
+  return out;
+}
+
+compensate::CompensateOptions loop_options(const CompensateOptions& request, simulate::Progress progress) {
+  compensate::CompensateOptions options;
+  options.progress = std::move(progress);
+  if (request.outlook)
+    options.outlook = [&](const compensate::Outlook& outlook) { request.outlook(report::outlook_sentence(outlook)); };
+  for (const auto& u : request.uncertainty)
+    for (auto& group : compensate::read_uncertainty(u)) options.uncertainty.push_back(std::move(group));
+  options.max_stock_crossings = request.page ? report::kMaxStockCrossings : 0;
+  options.time_budget_percent = request.time_budget_percent;
+  options.keep_anyway = request.keep_anyway;
+  options.recheck_voxels_mm = request.check_voxels_mm;
+  return options;
+}
+
+struct CompensatedJob {
+  machine::Job job;  ///< what was compensated: the given one, or as it was measured
+  CompensationResult result;
+};
+
+/// Throws InputError and BeyondModel. Writes nothing.
+CompensatedJob compensate_job(const machine::Job& given, const CompensateOptions& request,
+                              const simulate::Progress& progress, Diagnostics& diagnostics) {
+  compensate::CompensateOptions options = loop_options(request, progress);
+  std::optional<compensate::MeasuredFit> fit;
+  CompensatedJob out{
+      as_measured(with_levers(given, request.levers, diagnostics), request, diagnostics, options.progress, fit), {}};
+  const machine::Job& job = out.job;
+  if (request.header || request.header_hash)
+    options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };
+  out.result = compensate::compensate(job, diagnostics, options);
+  out.result.measured = fit;
+  feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
+  return out;
+}
 
 std::vector<CompensatedPoint> points_of(const CompensationResult& c) {
   std::vector<CompensatedPoint> out;
@@ -74,44 +154,107 @@ void check_output(const std::string& output, const machine::Job& job) {
                    "output-is-input");
 }
 
+/// Reads both programs once more, for their stamps and their feed.
+std::string page_of(const machine::Job& job, const CompensationResult& result, const std::string& output,
+                    const Diagnostics& diagnostics) {
+  Diagnostics ignored;  // said already
+  const auto machined = [&](SourceText source) {
+    return simulate::simulate_motion(std::move(source), job, {}, ignored);
+  };
+  const auto rows = [&](const simulate::SimulatedProgram& program) {
+    return report::rows_of_program(program, job.machine);
+  };
+  const auto before = machined(SourceText::read(job.program));
+  machine::Job emitted_job = job;
+  if (job.operations.given() && !result.block_of_line.empty())
+    emitted_job.operations = compensate::moved_ranges(result.operations, result.block_of_line);
+  const auto after = simulate::simulate_motion(SourceText(job.program, result.text), emitted_job, {}, ignored);
+  std::optional<nc::Interpretation> from;
+  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves;
+  return report::html_report(report::compensate_report(job, result, {before, rows(before), result.loads_before},
+                                                       {after, rows(after), result.loads_after}, output, diagnostics,
+                                                       from ? &*from : nullptr));
+}
+
+/// The emitted program, and beside it the record by which it can be judged again and what is measured of it; a pipe has
+/// nothing beside it.
+void write_files(const std::string& path, const CompensatedJob& done,
+                 const std::vector<inspect::FeatureResult>& features, Diagnostics& failed) {
+  std::error_code ec;
+  const auto is_file = [&] { return fs::is_regular_file(path, ec); };
+  try_to_write(
+      [&] {
+        write_file(path, done.result.text);
+        if (is_file())
+          write_file(compensate::record_path(path),
+                     compensate::record_json(compensate::make_record(done.job, done.result, path)));
+      },
+      failed);
+  if (!features.empty() && is_file())
+    try_to_write(
+        [&] { report::write_features_csv((fs::path(path).parent_path() / "features.csv").string(), features); },
+        failed);
+}
+
+Diagnostic unknown_parameter(const std::string& name, const std::string& job_path) {
+  return {Severity::warning,
+          {job_path, 0, 0},
+          "uncertainty: " + name + " is not a parameter of the job; ignored",
+          "uncertainty",
+          {}};
+}
+
 }  // namespace
 
-CompensateResult v0::compensate(const Job& job, const CompensateOptions& options, const RunOptions& run_options) {
-  const auto begin = std::chrono::steady_clock::now();
+CompensateResult v0::compensate(const Job& given, const CompensateOptions& options, const RunOptions& run_options) {
   CompensateResult result;
   api::Run run(run_options);
   run.execute([&] {
-    Diagnostics found = job.impl().found;
-    check_output(options.output, api::programmed(job));
-    check_levers(options.levers, job.impl().job, found);
-    const api::CompensateRequest request{.uncertainty = options.uncertainty,
-                                         .measured = options.measured,
-                                         .measured_program = options.measured_program,
-                                         .check_voxels_mm = options.check_voxels_mm,
-                                         .time_budget_percent = options.time_budget_percent,
-                                         .keep_anyway = options.keep_anyway,
-                                         .header = options.header,
-                                         .header_hash = options.header_hash,
-                                         .levers = options.levers,
-                                         .progress = run.progress()};
-    const api::CompensatedJob done = api::compensate_job(job.impl().job, request, found);
-    for (const std::string& name : done.result.unknown_parameters)
-      found.add({Severity::warning,
-                 {job.path(), 0, 0},
-                 "uncertainty: " + name + " is not a parameter of the job; ignored",
-                 "uncertainty",
-                 {}});
-    run.settle(found);
-    if (!options.output.empty() && (done.result.better || options.keep_anyway))
-      api::write_compensated(options.output, done.job, done.result);
-    const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    result = result_of(done.result, done.job.compensation);
-    result.diagnostics = found.all();
+    Diagnostics found = given.impl().found;
+    if (!options.dry_run) check_output(options.output, api::programmed(given));
+    check_levers(options.levers, given.impl().job, found);
+    bool in_rounds = false;  // their fraction is that of the whole run
+    const StageScope stages([&](const std::string& what, double fraction) {
+      if (!in_rounds) run.show(what, fraction);
+    });
+    const auto progress = [&](const std::string& step, double fraction) {
+      in_rounds = true;
+      options.step ? options.step(step, fraction) : run.show(step, fraction);
+    };
+    CompensatedJob done;
+    try {
+      done = compensate_job(api::programmed(given), options, progress, found);
+    } catch (const BeyondModel&) {
+      run.settle_first(found);
+      throw;
+    }
+    run.settle_first(found);
+    const double compute_s = run.seconds();
+    const CompensationResult& c = done.result;
+    Diagnostics all = found, failed;
+    for (const std::string& name : c.unknown_parameters) all.add(unknown_parameter(name, given.path()));
+    run.settle(all);
+    const auto features_before = report::features_of(done.job, c.surface_before),
+               features_after = report::features_of(done.job, c.surface_after);
+    const std::vector<std::string> assumed = machine::assumptions(given.impl().job);
+    result = result_of(c, done.job.compensation);
+    result.unknown_parameters = c.unknown_parameters;
+    result.diagnostics = all.all();
+    result.written = !options.output.empty() && !options.dry_run && (c.better || options.keep_anyway);
+    if (result.written) write_files(options.output, done, features_after, failed);
     result.json = machine::with_assumptions(
-        report::with_features(report::compensate_json(done.result, done.job.compensation, compute_s),
-                              {{"features_before", report::features_of(done.job, done.result.surface_before)},
-                               {"features_after", report::features_of(done.job, done.result.surface_after)}}),
-        machine::assumptions(done.job));
+        report::with_features(report::compensate_json(c, done.job.compensation, compute_s),
+                              {{"features_before", features_before}, {"features_after", features_after}}),
+        assumed);
+    result.printed = machine::assumptions_text(assumed) + report::compensate_text(c, compute_s) +
+                     report::features_text(features_before, features_after);
+    in_rounds = false;
+    if (options.page) {
+      run.steps()("writing the report", std::nullopt);
+      result.page = page_of(done.job, c, options.output, found);
+    }
+    if (options.throw_if_unwritten) failed.throw_if_errors();
+    result.unwritten = failed.all();
   });
   return result;
 }

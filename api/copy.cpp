@@ -1,25 +1,51 @@
 #include "camber/copy.h"
 
-#include <chrono>
+#include <algorithm>
 
-#include "api/commands/copy.h"
+#include <fmt/format.h>
+
 #include "api/run.h"
 #include "base/units.h"
+#include "checks/plausibility.h"
+#include "copymill/copy.h"
+#include "machine/assumptions.h"
+#include "machine/copy_operations.h"
+#include "machine/unprogrammed_job.h"
+#include "report/copy_page.h"
 #include "report/copy_summary.h"
+#include "simulate/collisions.h"
+#include "simulate/flute_reach.h"
+#include "simulate/predict.h"
 
 namespace camber {
 namespace {
 
-copymill::CopyOptions copy_options_of(const CopyOptions& options) {
-  copymill::CopyOptions out;
-  out.stop_after_s = options.stop_after_s;
-  if (!options.hardness.empty()) out.regions = simulate::read_force_regions(options.hardness);
-  if (options.stream)
-    out.stream = [&options](const copymill::Tick& t) {
-      options.stream(
-          {t.t_s, t.tip_mm.x(), t.tip_mm.y(), t.tip_mm.z(), mm_per_min_from_mm_per_s(t.feed_mm_per_s), t.load_N});
-    };
+struct CopyJob {
+  machine::Job job;
+  std::vector<machine::CopyOperation> operations;
+};
+
+CopyJob read_copy_job(const std::string& path, Diagnostics& diagnostics) {
+  CopyJob out{machine::read_unprogrammed_job(path, diagnostics), {}};
+  out.operations = machine::read_copy_operations(path, out.job, diagnostics);
+  checks::check_job_values(out.job, diagnostics);
+  diagnostics.throw_if_errors();
   return out;
+}
+
+/// The emitted text is read again: rapids through material, shank and holder in stock, and material above the flutes
+/// are diagnostics at its blocks.
+void check_emitted(const CopyJob& job, const std::string& program, const copymill::CopyResult& made,
+                   Diagnostics& diagnostics) {
+  if (std::ranges::all_of(made.operations, &copymill::OperationSummary::nothing_left)) return;
+  const simulate::SimulatedProgram emitted =
+      simulate::simulate_motion(SourceText(program, made.text), job.job, {}, diagnostics);
+  simulate::check_collisions(job.job, emitted, *made.blank, diagnostics);
+  simulate::check_flute_reach(job.job, emitted, *made.blank, diagnostics);
+}
+
+CopyTick tick_of(const copymill::Tick& t) {
+  return {t.t_s, t.tip_mm.x(), t.tip_mm.y(), t.tip_mm.z(), mm_per_min_from_mm_per_s(t.feed_mm_per_s), t.load_N};
 }
 
 CopiedOperation copied_operation(const copymill::OperationSummary& o) {
@@ -60,21 +86,44 @@ CopyResult copy_result_of(const copymill::CopyResult& r) {
 }  // namespace
 
 CopyResult v0::copy(const std::string& job_path, const CopyOptions& options, const RunOptions& run_options) {
-  const auto begin = std::chrono::steady_clock::now();
   CopyResult result;
   api::Run run(run_options);
   run.execute([&] {
     Diagnostics found;
-    const api::CopyJob job = api::read_copy_job(job_path, found);
-    const copymill::CopyResult done = api::copy_job(job, "program.nc", copy_options_of(options), found);
-    run.settle(found);
+    const CopyJob job = read_copy_job(job_path, found);
+    report::TickPicture picture;
+    copymill::CopyOptions how;
+    how.stop_after_s = options.stop_after_s;
+    if (!options.hardness.empty()) how.regions = simulate::read_force_regions(options.hardness);
+    if (options.stream || options.page)
+      how.stream = [&](const copymill::Tick& t) {
+        if (options.stream) options.stream(tick_of(t));
+        if (options.page) picture.add(t);
+      };
+    const copymill::CopyResult done = copymill::copy(job.job, job.operations, how, found);
+    check_emitted(job, options.output, done, found);
+    run.settle_first(found);
+    const double compute_s = run.seconds();
     if (!options.stock.empty()) done.stock->save(options.stock);
-    const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const std::vector<std::string> assumed = machine::assumptions(job.job);
     result = copy_result_of(done);
     result.diagnostics = found.all();
-    result.json = report::copy_json(done, compute_s);
+    result.json = machine::with_assumptions(report::copy_json(done, compute_s), assumed);
+    result.printed = machine::assumptions_text(assumed) + report::copy_text(done, compute_s);
+    if (options.page)
+      result.page =
+          report::copy_page(done, picture, {job_path, job.job.part.mesh, options.output}, api::texts_of(found));
   });
   return result;
+}
+
+std::string v0::copy_job_toml(const std::string& job_path, const RunOptions& run_options) {
+  Diagnostics found;
+  const CopyJob job = read_copy_job(job_path, found);
+  api::Run(run_options).settle_first(found);
+  std::string out = fmt::format("# {}\n{}", job_path, machine::to_toml(job.job));
+  for (const machine::CopyOperation& o : job.operations) out += machine::to_toml(o);
+  return out + fmt::format("\n# {}\n{}", job.job.machine_path, machine::to_toml(job.job.machine));
 }
 
 }  // namespace camber

@@ -1,15 +1,32 @@
 #include "camber/feed.h"
 
-#include "api/commands/feed.h"
+#include <algorithm>
+#include <memory>
+
 #include "api/feed_points.h"
 #include "api/job.h"
 #include "api/program.h"
+#include "api/rotary_program.h"
 #include "api/run.h"
 #include "base/units.h"
+#include "feedmodel/feed_csv.h"
+#include "feedmodel/fitted_range.h"
+#include "feedmodel/joint_map.h"
 #include "machine/assumptions.h"
+#include "report/feed_summary.h"
+#include "report/timed_track.h"
+#include "simulate/machine_checks.h"
 
 namespace camber {
 namespace {
+
+/// feedmodel::predict_feed, or predict_joints for a program with rotary motion; otherwise the sink gets no joints.
+feedmodel::FeedSummary feed_or_joints(const nc::Interpretation& moves, const machine::Machine& machine,
+                                      const feedmodel::JointSampleSink& sink) {
+  if (feedmodel::has_rotary_motion(moves, machine)) return feedmodel::predict_joints(moves, machine, sink);
+  return feedmodel::predict_feed(moves, machine,
+                                 [&](std::span<const feedmodel::TimedSample> samples) { sink(samples, {}); });
+}
 
 /// feed_mm_per_min of the points just added becomes what F counts.
 void add_poses(std::span<const feedmodel::JointSample> joints, FeedResult& result) {
@@ -23,6 +40,27 @@ void add_poses(std::span<const feedmodel::JointSample> joints, FeedResult& resul
 }
 
 }  // namespace
+
+nc::Interpretation api::moves_of_feed(const nc::Program& text, const machine::Machine& machine,
+                                      const nc::InterpreterOptions& options, const std::string& csv,
+                                      Diagnostics& diagnostics) {
+  nc::Interpretation moves = nc::interpret(text, rotary_interpreter_options(machine, options), diagnostics);
+  diagnostics.throw_if_errors();
+  simulate::check_machine(machine, text, moves, diagnostics);
+  simulate::check_spindle(text, moves, diagnostics);
+  check_rotary_motion(machine, text, moves, true, diagnostics);
+  place_rotary_moves(machine, moves);
+  if (!csv.empty()) feedmodel::check_feed_csv_size(moves, machine, csv, diagnostics);
+  feedmodel::check_range(moves, text.source.name(), machine, diagnostics);
+  return moves;
+}
+
+std::string api::rotary_columns(const nc::Interpretation& moves, const machine::Machine& machine) {
+  if (!feedmodel::has_rotary_motion(moves, machine)) return {};
+  std::string letters = machine.kinematics.rotary_axes();
+  std::ranges::sort(letters);
+  return letters;
+}
 
 feedmodel::SampleSink api::points_sink(const nc::Interpretation& moves, std::vector<FeedPoint>& points) {
   return [&moves, &points](std::span<const feedmodel::TimedSample> samples) {
@@ -41,27 +79,44 @@ FeedResult v0::feed(const Program& program, const Machine& machine, const FeedOp
   FeedResult result;
   api::Run run(run_options);
   run.execute([&] {
+    const machine::Machine& on = machine.impl().machine;
     Diagnostics found = machine.impl().found;
     found.append(program.impl().found);
     const nc::Interpretation moves =
-        api::moves_of_feed(program.impl().text, machine.impl().machine, program.impl().options, {}, found);
-    run.settle(found);
+        api::moves_of_feed(program.impl().text, on, program.impl().options, options.csv, found);
+    if (options.page && !feedmodel::has_rotary_motion(moves, on))
+      fail_on_file(program.path(),
+                   "turns no rotary axis of the machine, and the page of feed shows those; camber check --report shows "
+                   "programs of three axes",
+                   "no-rotary-motion");
+    run.settle_first(found);
+    std::unique_ptr<feedmodel::FeedCsv> csv;
+    if (!options.csv.empty())
+      csv = std::make_unique<feedmodel::FeedCsv>(moves, options.csv, api::rotary_columns(moves, on));
+    report::TimedTrack track(on, moves);
     const auto keep = api::points_sink(moves, result.points);
     const auto count = static_cast<double>(moves.moves.size());
-    const auto summary = api::predict_feed(
-        moves, machine.impl().machine,
+    const auto summary = feed_or_joints(
+        moves, on,
         [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
+          if (csv) joints.empty() ? csv->write(samples) : csv->write(samples, joints);
+          if (options.page) track.add(samples, joints);
           if (options.points) {
             keep(samples);
             add_poses(joints, result);
           }
           if (!samples.empty()) run.show("timing", static_cast<double>(samples.back().move) / count);
         });
+    if (csv) csv->commit();
+    const std::vector<std::string> assumed = machine::assumptions(on);
     result.time_s = summary.time_s;
     result.cutting_time_s = summary.cutting_time_s;
     result.blocks = summary.blocks;
     result.diagnostics = found.all();
-    result.json = machine::with_assumptions(api::feed_json(summary), machine::assumptions(machine.impl().machine));
+    result.json = machine::with_assumptions(report::feed_json(summary), assumed);
+    result.printed = machine::assumptions_text(assumed) + report::feed_text(summary);
+    if (options.page)
+      result.page = report::feed_page({program.path(), summary, track.take(), api::texts_of(found)}, moves, on);
   });
   return result;
 }

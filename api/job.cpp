@@ -1,10 +1,13 @@
 #include "api/job.h"
 
 #include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "machine/assumptions.h"
+#include "machine/job_programs.h"
 #include "machine/set_number.h"
 #include "machine/unprogrammed_job.h"
 
@@ -12,6 +15,7 @@ namespace camber {
 
 const std::string& Machine::path() const { return impl_->machine.path; }
 const std::vector<Diagnostic>& Machine::diagnostics() const { return impl_->found.all(); }
+const std::vector<std::string>& Machine::translation() const { return impl_->machine.translation; }
 std::string Machine::to_toml() const { return machine::to_toml(impl_->machine); }
 
 void Machine::set(std::string_view key, double value) {
@@ -32,6 +36,11 @@ const std::string& Job::path() const { return impl_->job.path; }
 const std::string& Job::program_path() const { return impl_->job.program; }
 const std::vector<Diagnostic>& Job::diagnostics() const { return impl_->found.all(); }
 std::string Job::to_toml() const { return machine::to_toml(impl_->job); }
+
+std::vector<std::string> Job::files() const {
+  const machine::Job& job = impl_->job;
+  return {job.path, job.program, job.machine_path, job.stock.mesh, job.stock.vdb, job.part.mesh, job.part.program};
+}
 
 Machine Job::machine() const {
   auto impl = std::make_shared<Machine::Impl>();
@@ -72,6 +81,31 @@ Job v0::read_unprogrammed_job(const std::string& path) {
   impl->job = machine::read_unprogrammed_job(path, impl->found);
   impl->found.throw_if_errors();
   return Job(std::move(impl));
+}
+
+std::vector<std::string> Job::assumed() const { return machine::assumptions(impl_->job); }
+
+JobOfPrograms v0::read_job_of_programs(const std::string& path) {
+  auto impl = std::make_shared<Job::Impl>();
+  machine::JobOfPrograms read = machine::read_job_of_programs(path, impl->found);
+  impl->found.throw_if_errors();
+  impl->job = std::move(read.job);
+  return {Job(std::move(impl)), std::move(read.programs)};
+}
+
+Job JobOfPrograms::of_program(std::size_t index, const std::string& stock) const {
+  auto impl = std::make_shared<Job::Impl>(job.impl());
+  if (index > 0) impl->found = {};
+  impl->job.program = programs[index];
+  if (!stock.empty()) {
+    impl->job.stock = {};
+    impl->job.stock.vdb = stock;
+  }
+  return Job(std::move(impl));
+}
+
+std::string JobOfPrograms::name(std::size_t index) const {
+  return fmt::format("{}-{}", index + 1, std::filesystem::path(programs[index]).stem().string());
 }
 
 const machine::Job& api::programmed(const Job& job) {

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 
-#include "api/commands/post.h"
 #include "api/job.h"
+#include "api/new_program.h"
 #include "api/program.h"
+#include "api/rotary_program.h"
 #include "api/run.h"
-#include "base/stage.h"
+#include "nc/language.h"
+#include "report/post_summary.h"
 
 namespace camber {
 namespace {
+
+constexpr int kPostSamples = 16;  ///< of each piece
 
 repath::PostOptions rules_of(const PostOptions& options) {
   return {.target = options.to_tip ? repath::PostTarget::tcp : repath::PostTarget::joints,
@@ -21,6 +25,40 @@ repath::PostOptions rules_of(const PostOptions& options) {
           .decimals = options.decimals};
 }
 
+void require_kinematics(const machine::Machine& machine) {
+  if (machine.kinematics.given()) return;
+  fail_on_file(machine.path, "the machine has no [kinematics]; the chain of its axes was expected", "kinematics");
+}
+
+std::size_t blocks_with_words(const nc::Program& program) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(program.blocks, [](const nc::Block& b) { return b.word_count > 0; }));
+}
+
+/// Throws InputError: what post() says of the program, and of the new one, at the blocks that it came from, what the
+/// checks of travel and of collisions with the machine's bodies say. `job`: null: without those bodies.
+report::PostSummary post_program(const Program& given, const machine::Machine& machine, const machine::Job* job,
+                                 const PostOptions& options, Diagnostics& diagnostics) {
+  const nc::Program& text = given.impl().text;
+  nc::require_iso(text, "post");
+  require_kinematics(machine);
+  const nc::InterpreterOptions& read = given.impl().options;
+  nc::Interpretation moves = nc::interpret(text, api::rotary_interpreter_options(machine, read), diagnostics);
+  diagnostics.throw_if_errors();
+  api::place_rotary_lines(machine, moves);
+  report::PostSummary out{.asked = rules_of(options), .posted = {}, .deviation = {}};
+  out.posted = repath::post(text, moves, machine, out.asked, diagnostics);
+  diagnostics.throw_if_errors();
+  const api::NewProgram after =
+      api::read_new_program(machine, options.output.empty() ? given.path() : options.output, out.posted.text, read);
+  api::check_new_program(machine, job, text, after.moves, out.posted.block_of_line, diagnostics);
+  diagnostics.throw_if_errors();
+  out.deviation = repath::post_deviation(moves, after.moves, machine, out.posted, kPostSamples);
+  out.blocks_before = blocks_with_words(text);
+  out.blocks_after = blocks_with_words(after.text);
+  return out;
+}
+
 PostResult posted(const Program& program, const machine::Machine& machine, const machine::Job* job,
                   const Diagnostics& before, const PostOptions& options, const RunOptions& run_options) {
   PostResult result;
@@ -28,15 +66,8 @@ PostResult posted(const Program& program, const machine::Machine& machine, const
   run.execute([&] {
     Diagnostics found = before;
     found.append(program.impl().found);
-    const StageScope stages([&](const std::string& what, double share) { run.show(what, share); });
-    const api::PostRequest request{.text = &program.impl().text,
-                                   .output = program.path(),
-                                   .machine = &machine,
-                                   .job = job,
-                                   .interpreter = program.impl().options,
-                                   .options = rules_of(options)};
-    const api::PostedProgram out = api::post_program(request, found);
-    run.settle(found);
+    const report::PostSummary out = post_program(program, machine, job, options, found);
+    run.settle_first(found);
     const repath::Posted& p = out.posted;
     result = {.text = p.text,
               .moves = p.moves,
@@ -47,7 +78,8 @@ PostResult posted(const Program& program, const machine::Machine& machine, const
               .turns_back_in_cuts = static_cast<std::size_t>(std::count_if(
                   p.turns_back.begin(), p.turns_back.end(), [](const repath::TurnBack& t) { return !t.in_air; })),
               .diagnostics = found.all(),
-              .json = api::post_json(out, request)};
+              .json = report::post_json(out),
+              .printed = report::post_text(out)};
   });
   return result;
 }

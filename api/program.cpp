@@ -23,7 +23,9 @@ nc::Dialect dialect_of_control(const std::string& name, const std::string& path)
   return feedmodel::dialect_of(machine::control_kinds()[static_cast<std::size_t>(at - names.begin())]);
 }
 
-nc::InterpreterOptions interpreter_options(const ReadOptions& options, const std::string& path) {
+}  // namespace
+
+nc::InterpreterOptions api::interpreter_options(const ReadOptions& options, const std::string& path) {
   nc::InterpreterOptions out;
   out.inch = options.inch;
   out.skip_slash_blocks = options.skip_slash_blocks;
@@ -32,7 +34,7 @@ nc::InterpreterOptions interpreter_options(const ReadOptions& options, const std
     out.skip_switches |= static_cast<std::uint16_t>(1u << static_cast<unsigned>(n));
   }
   if (!options.dialect.empty()) out.dialect = dialect_of_control(options.dialect, path);
-  if (options.least_increments) out.whole_numbers_are_increments = true;
+  if (options.least_increments) out.whole_numbers_are_increments = *options.least_increments;
   for (const auto& [number, length_mm] : options.tool_lengths_mm) out.tool_offsets[number].length_mm = length_mm;
   for (const auto& [name, values] : options.work_offsets) {
     const auto number = nc::work_offset_number(name);
@@ -47,10 +49,12 @@ nc::InterpreterOptions interpreter_options(const ReadOptions& options, const std
   return out;
 }
 
+namespace {
+
 Program program_of(SourceText source, const ReadOptions& options) {
   auto impl = std::make_shared<Program::Impl>();
   impl->path = source.name();
-  impl->options = interpreter_options(options, impl->path);
+  impl->options = api::interpreter_options(options, impl->path);
   impl->text = nc::read_program(std::move(source), nc::language_asked_for(impl->options), impl->found);
   return Program(std::move(impl));
 }

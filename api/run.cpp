@@ -1,9 +1,12 @@
 #include "api/run.h"
 
+#include <limits>
+
 #include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
 #include "base/cancel.h"
+#include "base/stage.h"
 
 namespace camber {
 namespace api {
@@ -38,6 +41,7 @@ void Run::execute(const std::function<void()>& work) {
   const TokenForWorkers observer(arena, token);
   arena.execute([&] {
     const CancelScope here(token);
+    const StageScope stages(options_.progress ? progress() : StageSink());
     cancellation_point();
     work();
   });
@@ -53,9 +57,29 @@ std::function<void(const std::string&, double)> Run::progress() {
   return [this](const std::string& what, double fraction) { show(what, fraction); };
 }
 
+std::function<void(const std::string&, std::optional<double>)> Run::steps() {
+  const double unknown = options_.nan_where_unknown ? std::numeric_limits<double>::quiet_NaN() : 0;
+  return [this, unknown](const std::string& what, std::optional<double> fraction) {
+    show(what, fraction.value_or(unknown));
+  };
+}
+
 void Run::settle(const Diagnostics& diagnostics) const {
   diagnostics.throw_if_errors();
   if (options_.strict) throw_if_any(diagnostics);
+}
+
+void Run::settle_first(const Diagnostics& diagnostics) const {
+  settle(diagnostics);
+  if (options_.warn) options_.warn(diagnostics.all());
+}
+
+double Run::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+std::vector<std::string> texts_of(const Diagnostics& diagnostics) {
+  std::vector<std::string> out;
+  for (const Diagnostic& d : diagnostics.all()) out.push_back(to_string(d));
+  return out;
 }
 
 }  // namespace api

@@ -1,9 +1,12 @@
 #pragma once
 // One call of the library: its threads, its stop token, its progress.
+#include <chrono>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "camber/run.h"
@@ -22,12 +25,24 @@ class Run {
   void show(std::string_view what, double fraction);
   std::function<void(const std::string& what, double fraction)> progress();
 
-  /// The command line's settle(): throws where there are errors or, strict, warnings.
+  /// The same for steps of which the fraction that is done may not be known.
+  std::function<void(const std::string& what, std::optional<double> fraction)> steps();
+
+  /// Throws where there are errors or, strict, warnings.
   void settle(const Diagnostics& diagnostics) const;
+  /// The same of what is known before the long part of the work: the caller is told.
+  void settle_first(const Diagnostics& diagnostics) const;
+
+  /// Since the call began.
+  double seconds() const;
 
  private:
   const RunOptions& options_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::stop_source stop_;
 };
+
+/// As they are printed.
+std::vector<std::string> texts_of(const Diagnostics& diagnostics);
 
 }  // namespace camber::api

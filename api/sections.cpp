@@ -1,16 +1,10 @@
 #include "camber/sections.h"
 
 #include <algorithm>
-#include <chrono>
 #include <stdexcept>
 #include <utility>
 
-#include "api/commands/sections.h"
-#include "api/predict_result.h"
-#include "api/run.h"
-#include "machine/assumptions.h"
-#include "report/feature_results.h"
-#include "report/summary.h"
+#include "api/section_run.h"
 
 namespace camber {
 namespace {
@@ -22,8 +16,10 @@ void check_section(const SectionOptions& options) {
     throw std::invalid_argument("round: 1 ... 12 was expected, 1 without solve");
 }
 
-api::StepProgress steps_of(api::Run& run) {
-  return [&run](const std::string& what, std::optional<double> share) { run.show(what, share.value_or(0)); };
+/// The warnings of the job's files come first.
+PredictResult with_first(const Diagnostics& of_job, PredictResult result) {
+  result.diagnostics.insert(result.diagnostics.begin(), of_job.all().begin(), of_job.all().end());
+  return result;
 }
 
 }  // namespace
@@ -36,13 +32,14 @@ SectionResult v0::predict_section(const std::string& job_path, const std::string
   run.execute([&] {
     Diagnostics found, of_run;
     const machine::Job job = machine::read_job(job_path, found);
-    run.settle(found);
+    run.settle_first(found);
     const api::PartKey key = api::part_key(job, options.sections, options.forces_at);
     api::PartFiles store(folder, key);
-    api::SectionRun section(job, key, store, steps_of(run), of_run);
+    api::SectionRun section(job, key, store, run.steps(), of_run);
     const api::PartName name{options.solve ? api::PartStage::solve : api::PartStage::sweep, options.round,
                              options.section - 1, options.sections};
-    if (options.round == 1 || section.is_static()) {
+    out.has_round = options.round == 1 || section.is_static();
+    if (out.has_round) {
       out.computed = options.solve ? section.solve(name.section, name.round) : section.sweep(name.section);
       out.part = store.path(name);
       out.solved_again = static_cast<std::int64_t>(section.solved_again_in(name));
@@ -56,38 +53,48 @@ SectionResult v0::predict_section(const std::string& job_path, const std::string
   return out;
 }
 
-PredictResult v0::merge(const std::string& folder, const RunOptions& run_options) {
-  const auto begin = std::chrono::steady_clock::now();
+PredictResult v0::predict_in_sections(const std::string& job_path, std::size_t sections, const PredictOptions& options,
+                                      const RunOptions& run_options) {
+  check_section({.sections = sections});
+  PredictResult out;
+  api::Run run(run_options);
+  run.execute([&] {
+    Diagnostics found, of_run;
+    const machine::Job job = machine::read_job(job_path, found);
+    run.settle_first(found);
+    const api::PartKey key = api::part_key(job, sections, options.forces_at);
+    api::PartFiles store(options.output_folder, key);
+    api::SectionRun all(job, key, store, run.steps(), of_run);
+    for (std::size_t s = 0; s < sections; ++s) all.sweep(s);
+    int round = 1;
+    for (;;) {
+      for (std::size_t s = 0; s < sections; ++s) all.solve(s, round);
+      if (!all.is_static() || round == api::kMaxSectionRounds || (round > 1 && all.solved_again(round) == 0)) break;
+      ++round;
+    }
+    out = with_first(found, api::merge_parts(job, key, round, store, options, all.take_programs(), run));
+  });
+  return out;
+}
+
+PredictResult v0::merge(const std::string& folder, const MergeOptions& options, const RunOptions& run_options) {
   PredictResult out;
   api::Run run(run_options);
   run.execute([&] {
     const api::PartKey of_parts = api::find_parts(folder);
-    Diagnostics of_job, found, of_cut, failed;
-    const machine::Job job = machine::read_job(of_parts.job_path, of_job);
-    run.settle(of_job);
+    Diagnostics found;
+    const machine::Job job = machine::read_job(of_parts.job_path, found);
+    run.settle_first(found);
     const api::PartKey key = api::part_key(job, of_parts.sections, of_parts.forces_at);
     api::PartFiles store(folder, key);
     const int round = std::max(1, api::last_round(folder, key));
-    const api::PredictRequest request{.folder = folder, .forces_at = key.forces_at, .progress = steps_of(run)};
-    api::MergedJob merged = api::merge_parts(job, key, round, store, request, found, of_cut);
-    run.settle(found);
-    run.settle(of_cut);
-    found.append(of_cut);
-    out = api::result_of(job, merged.prepared, merged.prediction);
-    if (!merged.doubt.empty()) out.doubts.push_back(merged.doubt);
-    const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.json = machine::with_assumptions(
-        report::with_features(api::with_sections(report::predict_json(merged.prepared.setup.program, merged.prediction,
-                                                                      compute_s, nullptr, out.doubts),
-                                                 merged.figures),
-                              {{"features", report::features_of(job, merged.prediction.surface)}}),
-        machine::assumptions(job));
-    of_job.append(found);
-    out.diagnostics = of_job.all();
-    api::write_prediction(job, merged.prepared, merged.prediction, request, out.json, found, failed);
-    failed.throw_if_errors();
+    const PredictOptions how{
+        .output_folder = folder, .rows = options.rows, .throw_if_unwritten = options.throw_if_unwritten};
+    out = with_first(found, api::merge_parts(job, key, round, store, how, nullptr, run));
   });
   return out;
 }
+
+PredictResult v0::merge(const std::string& folder, const RunOptions& run) { return merge(folder, MergeOptions(), run); }
 
 }  // namespace camber

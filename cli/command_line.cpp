@@ -16,7 +16,6 @@
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/mpi_run.h"
-#include "cli/plan_command.h"
 #include "machine/toml_table.h"
 
 namespace camber::cli {
@@ -142,9 +141,21 @@ int run(int argc, const char* const* argv) {
   GlobalOptions options;
   Action chosen;
   add_global_options(app, options);
-  add_program_commands(app, options, chosen);
+  add_check_command(app, options, chosen);
+  add_feed_command(app, options, chosen);
+  add_time_command(app, options, chosen);
+  add_fit_feed_command(app, options, chosen);
+  add_protocol_command(app, options, chosen);
+  add_compress_command(app, options, chosen);
+  add_resegment_command(app, options, chosen);
+  add_post_command(app, options, chosen);
+  add_posture_command(app, options, chosen);
   add_init_command(app, options, chosen);
-  add_job_commands(app, options, chosen);
+  add_predict_command(app, options, chosen);
+  add_compensate_command(app, options, chosen);
+  add_adapt_command(app, options, chosen);
+  add_study_command(app, options, chosen);
+  add_merge_command(app, options, chosen);
   add_copy_command(app, options, chosen);
   add_plan_command(app, options, chosen);
   add_force_commands(app, options, chosen);

@@ -15,15 +15,27 @@ namespace camber::cli {
 /// Runs a subcommand once the command line is read; returns the exit status.
 using Action = std::function<int()>;
 
-/// Adds the subcommands. The one that is given sets `chosen`.
-void add_program_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< check, feed, fit-feed
+/// Adds a subcommand: its options, and the work, which sets `chosen` where it is given. Each is in NAME_command.cpp.
+void add_check_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_feed_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_time_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_fit_feed_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_protocol_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_compress_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_resegment_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_post_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_posture_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_predict_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_compensate_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_adapt_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_study_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_merge_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_plan_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_dynamics_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< lobes, fit-modes
-void add_init_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
-/// predict, compensate, adapt, study
-void add_job_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_ui_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
-void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 /// completion, and an example for each of the subcommands that are there; to be called last.
 void add_help(CLI::App& app, Action& chosen);
 

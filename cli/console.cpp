@@ -77,6 +77,12 @@ void settle(const Diagnostics& diagnostics, const GlobalOptions& options) {
   print_diagnostics(diagnostics.all(), options);
 }
 
+void settle(const std::vector<Diagnostic>& warnings, const GlobalOptions& options) {
+  Diagnostics collected;
+  for (const Diagnostic& d : warnings) collected.add(d);
+  settle(collected, options);
+}
+
 void print_translation(std::span<const std::string> translation, const GlobalOptions& options) {
   if (options.quiet) return;
   for (const std::string& line : translation) fmt::print(stderr, "{}\n", line);

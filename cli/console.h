@@ -2,6 +2,7 @@
 // What goes to the terminal: diagnostics, in colour where the terminal and the user want it.
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/json.h"
@@ -33,6 +34,8 @@ void print_diagnostics(std::span<const Diagnostic> diagnostics, const GlobalOpti
 /// Settles the messages of a command's readers: prints warnings; throws InputError when there are errors, or
 /// (--strict) warnings, which are errors then.
 void settle(const Diagnostics& diagnostics, const GlobalOptions& options);
+/// The same of warnings.
+void settle(const std::vector<Diagnostic>& warnings, const GlobalOptions& options);
 
 /// Prints how [source] of a machine file was read, on stderr; nothing with -q.
 void print_translation(std::span<const std::string> translation, const GlobalOptions& options);

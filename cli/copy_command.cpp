@@ -1,23 +1,31 @@
-#include "cli/copy_command.h"
-
-#include <chrono>
+// camber copy J.toml -o OUT.nc [--stream S.csv] [--stock OUT.vdb] [--log LOG.csv] [--hardness REGIONS.csv]
+// [--report R.html] [--json R.json]
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-#include "api/commands/copy.h"
 #include "base/output_file.h"
-#include "base/stage.h"
-#include "base/units.h"
+#include "camber/copy.h"
+#include "camber/job.h"
+#include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "machine/assumptions.h"
-#include "report/copy_page.h"
-#include "report/copy_summary.h"
 
 namespace camber::cli {
 namespace {
+
+struct CopyArguments {
+  std::string job;
+  std::string output;
+  std::string stream;  ///< empty: none
+  std::string json;    ///< empty: none
+  std::string log;     ///< changes of feed and depths; empty: none
+  std::string report;  ///< empty: none
+  CopyOptions options{};
+};
 
 /// A row a tick, written as they come.
 class StreamWriter {
@@ -25,9 +33,9 @@ class StreamWriter {
   explicit StreamWriter(const std::string& path) : file_(path) {
     file_.stream() << "t_s,x_mm,y_mm,z_mm,feed_mm_per_min,load_N\n";
   }
-  void add(const copymill::Tick& t) {
-    file_.stream() << fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},{:.1f}\n", t.t_s, t.tip_mm.x(), t.tip_mm.y(),
-                                  t.tip_mm.z(), mm_per_min_from_mm_per_s(t.feed_mm_per_s), t.load_N);
+  void add(const CopyTick& t) {
+    file_.stream() << fmt::format("{:.4f},{:.4f},{:.4f},{:.4f},{:.1f},{:.1f}\n", t.t_s, t.x_mm, t.y_mm, t.z_mm,
+                                  t.feed_mm_per_min, t.load_N);
   }
   void commit() { file_.commit(); }
 
@@ -35,58 +43,69 @@ class StreamWriter {
   OutputFile file_;
 };
 
-std::vector<std::string> warnings_of(const Diagnostics& diagnostics) {
-  std::vector<std::string> out;
-  for (const Diagnostic& d : diagnostics.all()) out.push_back(to_string(d));
-  return out;
+/// Throws InputError. Returns kDone.
+int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
+  ProgressLine progress(options, "reading");
+  CopyOptions asked = arguments.options;
+  const Job job = read_unprogrammed_job(arguments.job);
+  std::vector<std::string> inputs = job.files();
+  std::erase(inputs, job.program_path());  // which may be the one that is made
+  inputs.push_back(asked.hardness);
+  check_outputs({arguments.output, arguments.stream, asked.stock, arguments.log, arguments.report, arguments.json},
+                inputs);
+  std::optional<StreamWriter> stream;
+  if (!arguments.stream.empty()) {
+    stream.emplace(arguments.stream);
+    asked.stream = [&](const CopyTick& t) { stream->add(t); };
+  }
+  asked.page = !arguments.report.empty();
+  asked.output = arguments.output;
+  const CopyResult result = copy(arguments.job, asked, run_options(progress, options));
+  Diagnostics failed;
+  try_to_write([&] { write_file(arguments.output, result.program); }, failed);
+  if (stream) try_to_write([&] { stream->commit(); }, failed);
+  if (!arguments.log.empty()) try_to_write([&] { write_file(arguments.log, result.log); }, failed);
+  if (!arguments.report.empty()) try_to_write([&] { write_file(arguments.report, result.page); }, failed);
+  if (!arguments.json.empty()) try_to_write([&] { write_file(arguments.json, result.json); }, failed);
+  if (!options.quiet) fmt::print("{}", result.printed);
+  failed.throw_if_errors();
+  return kDone;
+}
+
+int print_effective_copy_job(const std::string& path, const GlobalOptions& options) {
+  ProgressLine progress(options, "reading");
+  fmt::print("{}", copy_job_toml(path, run_options(progress, options)));
+  return kDone;
 }
 
 }  // namespace
 
-int run_copy(const CopyArguments& arguments, const GlobalOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  Diagnostics diagnostics;
-  ProgressLine progress(options, "reading");
-  const api::CopyJob job = api::read_copy_job(arguments.job, diagnostics);
-  check_outputs({arguments.output, arguments.stream, arguments.stock, arguments.log, arguments.report, arguments.json},
-                {job.job.path, job.job.machine_path, job.job.part.mesh, job.job.stock.mesh, job.job.stock.vdb,
-                 arguments.hardness});
-  const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
-  std::optional<StreamWriter> stream;
-  copymill::CopyOptions copy_options;
-  copy_options.stop_after_s = arguments.stop_after_s;
-  if (!arguments.hardness.empty()) copy_options.regions = simulate::read_force_regions(arguments.hardness);
-  if (!arguments.stream.empty()) stream.emplace(arguments.stream);
-  report::TickPicture picture;
-  copy_options.stream = [&](const copymill::Tick& t) {
-    if (stream) stream->add(t);
-    if (!arguments.report.empty()) picture.add(t);
-  };
-  const copymill::CopyResult result = api::copy_job(job, arguments.output, copy_options, diagnostics);
-  progress.clear();
-  settle(diagnostics, options);
-  const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const std::vector<std::string> assumed = machine::assumptions(job.job);
-  Diagnostics failed;
-  try_to_write([&] { write_file(arguments.output, result.text); }, failed);
-  if (stream) try_to_write([&] { stream->commit(); }, failed);
-  if (!arguments.stock.empty()) try_to_write([&] { result.stock->save(arguments.stock); }, failed);
-  if (!arguments.log.empty()) try_to_write([&] { write_file(arguments.log, report::copy_log_csv(result)); }, failed);
-  if (!arguments.report.empty())
-    try_to_write(
-        [&] {
-          write_file(arguments.report,
-                     report::copy_page(result, picture, {arguments.job, job.job.part.mesh, arguments.output},
-                                       warnings_of(diagnostics)));
-        },
-        failed);
-  if (!arguments.json.empty())
-    try_to_write(
-        [&] { write_file(arguments.json, machine::with_assumptions(report::copy_json(result, compute_s), assumed)); },
-        failed);
-  if (!options.quiet) fmt::print("{}{}", machine::assumptions_text(assumed), report::copy_text(result, compute_s));
-  failed.throw_if_errors();
-  return kDone;
+void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("copy", "make paths from the part's model while the tool cuts");
+  auto arguments = std::make_shared<CopyArguments>();
+  command->add_option("job", arguments->job, "job.toml with [part] mesh and [[copy]]")->required()->type_name("J.toml");
+  command->add_option("-o,--output", arguments->output, "the program")->required()->type_name("OUT.nc");
+  command->add_option("--stream", arguments->stream, "positions, feed and load, a row a tick of the control")
+      ->type_name("S.csv");
+  command->add_option("--stock", arguments->options.stock, "the stock that is left")->type_name("OUT.vdb");
+  command
+      ->add_option("--stop-after", arguments->options.stop_after_s,
+                   "stop after this time, s, and lift the tool; with --stock the run can be taken up again")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  command->add_option("--log", arguments->log, "changes of feed and depths: time, place, reason")->type_name("LOG.csv");
+  command
+      ->add_option("--hardness", arguments->options.hardness,
+                   "boxes in which the material is harder by a factor: the cut feels it, the rule has to find out")
+      ->type_name("REGIONS.csv");
+  command->add_option("--report", arguments->report, "page with the path, loads and feeds")->type_name("R.html");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_copy_job(arguments->job, options);
+      return run_copy(*arguments, options);
+    };
+  });
 }
 
 }  // namespace camber::cli

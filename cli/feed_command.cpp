@@ -1,69 +1,67 @@
-#include "cli/feed_command.h"
-
-#include <fmt/format.h>
+// camber feed P.nc --machine M.toml [-o feed.csv] [--report R.html] [--json R.json]
+#include "camber/feed.h"
 
 #include <memory>
 
-#include "api/commands/feed.h"
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
 #include "base/output_file.h"
+#include "cli/command_line.h"
 #include "cli/console.h"
-#include "cli/feed_page.h"
+#include "cli/outputs.h"
+#include "cli/program_options.h"
 #include "cli/progress.h"
-#include "feedmodel/feed_csv.h"
-#include "feedmodel/joint_map.h"
-#include "feedmodel/timed_path.h"
-#include "machine/assumptions.h"
-#include "machine/machine.h"
-#include "nc/language.h"
-#include "nc/program.h"
-#include "report/timed_track.h"
 
 namespace camber::cli {
+namespace {
 
+struct FeedArguments {
+  std::string program, machine;
+  std::string json;    ///< empty: none
+  std::string report;  ///< page of a machine with rotary axes; empty: none
+  FeedOptions options{};
+  ReadOptions read{};
+};
+
+/// Throws InputError. Returns kDone.
 int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
-  Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
-  const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
-  const nc::Program program =
-      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
-  const nc::Interpretation moves =
-      api::moves_of_feed(program, machine, arguments.interpreter, arguments.output, diagnostics);
-  progress.clear();
-  if (!arguments.report.empty() && !feedmodel::has_rotary_motion(moves, machine))
-    fail_on_file(arguments.program,
-                 "turns no rotary axis of the machine, and the page of feed shows those; camber check --report shows "
-                 "programs of three axes",
-                 "no-rotary-motion");
-  settle(diagnostics, options);
-  print_translation(machine.translation, options);
-
-  std::unique_ptr<feedmodel::FeedCsv> csv;
-  if (!arguments.output.empty())
-    csv = std::make_unique<feedmodel::FeedCsv>(moves, arguments.output, api::rotary_columns(moves, machine));
-  report::TimedTrack track(machine, moves);
-  const feedmodel::FeedSummary summary = api::predict_feed(
-      moves, machine,
-      [&](std::span<const feedmodel::TimedSample> samples, std::span<const feedmodel::JointSample> joints) {
-        if (csv && joints.empty()) csv->write(samples);
-        if (csv && !joints.empty()) csv->write(samples, joints);
-        if (!arguments.report.empty()) track.add(samples, joints);
-        if (!samples.empty())
-          progress.show("timing", static_cast<double>(samples.back().move) / static_cast<double>(moves.moves.size()));
-      });
-  if (csv) csv->commit();
-  progress.clear();
-
-  if (!options.quiet)
-    fmt::print("{}time          {:.3f} s\ncutting time  {:.3f} s\nblocks        {}\n",
-               machine::assumptions_text(machine::assumptions(machine)), summary.time_s, summary.cutting_time_s,
-               summary.blocks);
-  if (!options.quiet && summary.contour) fmt::print("{}", api::contour_text(*summary.contour));
-  if (!arguments.json.empty())
-    write_file(arguments.json, machine::with_assumptions(api::feed_json(summary), machine::assumptions(machine)));
-  if (!arguments.report.empty())
-    write_file(arguments.report,
-               feed_page({arguments.program, arguments.machine, summary, track.take()}, moves, machine, diagnostics));
+  FeedOptions asked = arguments.options;
+  asked.points = false;
+  asked.page = !arguments.report.empty();
+  const Machine machine = read_machine(arguments.machine);
+  const FeedResult result =
+      feed(read_program(arguments.program, arguments.read), machine, asked, run_options(progress, options));
+  print_translation(machine.translation(), options);
+  if (!options.quiet) fmt::print("{}", result.printed);
+  if (!arguments.json.empty()) write_file(arguments.json, result.json);
+  if (!arguments.report.empty()) write_file(arguments.report, result.page);
   return kDone;
+}
+
+}  // namespace
+
+void add_feed_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("feed", "predict the actual feed along a program, and its time");
+  auto arguments = std::make_shared<FeedArguments>();
+  command->add_option("program", arguments->program, "NC program")->required()->type_name("P.nc");
+  command->add_option("--machine", arguments->machine, "machine.toml")->required()->type_name("M.toml");
+  command->add_option("-o,--output", arguments->options.csv, "axis positions at every period")->type_name("feed.csv");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->add_option("--report", arguments->report, "page of a machine with rotary axes as it runs the program")
+      ->type_name("R.html");
+  add_tool_lengths(*command, arguments->read);
+  add_work_offsets(*command, arguments->read);
+  add_reading_options(*command, arguments->read);
+  command->callback([arguments, &options, &chosen] {
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_machine(arguments->machine, options);
+      check_outputs({arguments->options.csv, arguments->json, arguments->report},
+                    {arguments->program, arguments->machine});
+      return run_feed(*arguments, options);
+    };
+  });
 }
 
 }  // namespace camber::cli

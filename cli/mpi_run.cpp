@@ -24,7 +24,7 @@
 #include <fmt/format.h>
 #include <mpi.h>
 
-#include "api/commands/sections.h"
+#include "api/section_run.h"
 #include "base/output_file.h"
 #include "cli/progress.h"
 #include "simulate/shared_prediction.h"
@@ -44,7 +44,7 @@ bool started_by_mpi() {
 
 bool has_mpi() { return false; }
 
-int run_predict_on_ranks(const SectionsArguments&, const GlobalOptions&) { return kCommandLineWrong; }
+int run_predict_on_ranks(const PredictArguments&, const GlobalOptions&) { return kCommandLineWrong; }
 int run_compensate_on_ranks(const CompensateArguments&, const GlobalOptions&) { return kCommandLineWrong; }
 
 #else
@@ -270,16 +270,20 @@ void tell_work(const Ranks& ranks, const simulate::SectionWork& work, std::uint6
              balance_percent(of_ranks[0]), balance_percent(of_ranks[1]), balance_percent(of_ranks[3]));
 }
 
-int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions options) {
+int predict_on(const Ranks& ranks, const PredictArguments& arguments, GlobalOptions options) {
   if (ranks.rank() > 0) options.quiet = true;
-  arguments.sections = ranks.size();
-  const auto begin = std::chrono::steady_clock::now();
+  PredictOptions asked = arguments.options;
+  asked.rows = false;
+  asked.throw_if_unwritten = false;
   Diagnostics diagnostics, of_run;
+  std::size_t settled = 0;
   ProgressLine progress(options, "reading");
+  const RunOptions how = run_options(progress, options, &settled);
+  api::Run of_library(how);
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
   settle(diagnostics, options);
-  const api::PartKey key = api::part_key(job, arguments.sections, arguments.forces_at);
-  RankParts store(ranks, arguments.output_folder, key);
+  const api::PartKey key = api::part_key(job, ranks.size(), asked.forces_at);
+  RankParts store(ranks, asked.output_folder, key);
   int round = 1;
   simulate::SectionWork work;
   std::shared_ptr<simulate::ReadPrograms> programs;
@@ -289,7 +293,7 @@ int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions op
   };
   {
     const EndsBetweenParts ends;
-    api::SectionRun run(job, key, store, section_steps(progress), of_run);
+    api::SectionRun run(job, key, store, of_library.steps(), of_run);
     compute([&] { run.sweep(ranks.rank()); });
     store.exchange_parts(run, api::PartStage::sweep, 1);
     for (bool again = true; again;) {
@@ -305,8 +309,9 @@ int predict_on(const Ranks& ranks, SectionsArguments arguments, GlobalOptions op
   if (options.verbosity > 0) tell_work(ranks, work, store.sent_bytes());
   store.begin_merge();
   if (ranks.rank() > 0) return store.serve_merge();
-  return store.end_merge(merge_and_write(
-      job, key, round, store, {arguments.output_folder, arguments.json, std::move(programs)}, options, begin));
+  const PredictResult merged = api::merge_parts(job, key, round, store, asked, std::move(programs), of_library);
+  progress.clear();
+  return store.end_merge(finish_prediction(merged, settled, arguments.json, options));
 }
 
 /// How the predictions of a compensation were shared.
@@ -328,11 +333,10 @@ int compensate_on(const Ranks& ranks, const CompensateArguments& arguments, cons
   if (ranks.rank() == 0) {
     status = run_compensate(arguments, options);
   } else {
-    Diagnostics diagnostics;  // rank 0 says them
-    const machine::Job job = machine::read_job(arguments.job, diagnostics);
-    diagnostics.throw_if_errors();
+    CompensateOptions asked = arguments.options;
+    asked.dry_run = true;  // rank 0 writes
     try {
-      api::compensate_job(job, compensate_request(arguments), diagnostics);
+      v0::compensate(read_job(arguments.job), asked);
     } catch (const BeyondModel&) {  // so does rank 0
     }
   }
@@ -365,7 +369,7 @@ int run_on_ranks(const GlobalOptions& options, const Work& work) {
 
 }  // namespace
 
-int run_predict_on_ranks(const SectionsArguments& arguments, const GlobalOptions& options) {
+int run_predict_on_ranks(const PredictArguments& arguments, const GlobalOptions& options) {
   return run_on_ranks(options, [&](const Ranks& ranks) { return predict_on(ranks, arguments, options); });
 }
 

@@ -5,9 +5,7 @@
 // The same executable with and without mpirun; the only file that sees MPI is mpi_run.cpp.
 #include <string>
 
-#include "cli/compensate_command.h"
-#include "cli/global_options.h"
-#include "cli/sections_command.h"
+#include "cli/job_commands.h"
 
 namespace camber::cli {
 
@@ -17,7 +15,7 @@ bool started_by_mpi();
 bool has_mpi();
 
 /// camber predict on every rank; rank 0 merges and writes. The exit status is that of rank 0. Requires has_mpi().
-int run_predict_on_ranks(const SectionsArguments& arguments, const GlobalOptions& options);
+int run_predict_on_ranks(const PredictArguments& arguments, const GlobalOptions& options);
 /// camber compensate on every rank; rank 0 writes. As above.
 int run_compensate_on_ranks(const CompensateArguments& arguments, const GlobalOptions& options);
 

@@ -1,71 +1,59 @@
-#include "cli/plan_command.h"
+// camber plan PLAN.toml -o DIR [--operations T.toml] [--programs] [--json R.json]
+#include "camber/plan.h"
 
-#include <chrono>
 #include <memory>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "api/commands/plan.h"
 #include "base/output_file.h"
-#include "base/stage.h"
+#include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "report/plan_summary.h"
 
 namespace camber::cli {
 namespace {
 
-std::vector<std::string> texts_of(const Diagnostics& diagnostics) {
-  std::vector<std::string> out;
-  for (const Diagnostic& d : diagnostics.all()) out.push_back(to_string(d));
-  return out;
-}
+struct PlanArguments {
+  std::string plan;
+  std::string output_folder;
+  std::string json;  ///< besides DIR/plan.json; empty: none
+  bool cases_error = false;
+  PlanOptions options{};
+};
 
-int print_cases_error(const plan::PlanInput& input) {
-  fmt::print("{}", report::cases_error_text(input.cases));
-  return kDone;
-}
-
-}  // namespace
-
+/// Throws InputError. Returns kDone or kNumbersDidNotWorkOut.
 int run_plan(const PlanArguments& arguments, const GlobalOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  Diagnostics diagnostics;
   ProgressLine progress(options, "reading");
-  const plan::PlanInput input = plan::read_plan_input(arguments.plan, diagnostics);
-  if (arguments.cases_error) return progress.clear(), settle(diagnostics, options), print_cases_error(input);
-  const StageScope stages([&](const std::string& what, double share) { progress.show(what, share); });
-  const api::PlannedFiles done = api::plan_job(
-      input,
-      {.operations = arguments.operations, .programs = arguments.programs, .all_programs = arguments.all_programs},
-      diagnostics);
-  progress.clear();
-  settle(diagnostics, options);
-  print_translation(input.machine.translation, options);
-  const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (arguments.cases_error) {
+    fmt::print("{}", cases_error(arguments.plan, run_options(progress, options)));
+    return kDone;
+  }
+  PlanOptions asked = arguments.options;
+  asked.page = true;
+  const PlanResult result = v0::plan(arguments.plan, asked, run_options(progress, options));
+  print_translation(result.translation, options);
   make_folder(arguments.output_folder);
   Diagnostics failed;
   const auto write = [&](const std::string& path, const std::string& text) {
     try_to_write([&] { write_file(path, text); }, failed);
   };
-  for (const auto& [name, text] : done.files) write(arguments.output_folder + "/" + name, text);
-  const std::string json = report::plan_json(input, done.result, compute_s);
-  write(arguments.output_folder + "/plan.json", json);
-  if (!arguments.json.empty()) write(arguments.json, json);
-  write(arguments.output_folder + "/report.html", report::plan_page(input, done.result, texts_of(diagnostics)));
-  if (!options.quiet) fmt::print("{}", report::plan_text(input, done.result, compute_s));
-  if (arguments.learn) {
-    const api::LearnedCases learned = api::learn_cases(input, done.result);
-    if (learned.added > 0) write(input.cases.path, learned.text);
-    if (!options.quiet) fmt::print("{} new cases in {}\n", learned.added, input.cases.path);
+  for (const auto& [name, text] : result.files) write(arguments.output_folder + "/" + name, text);
+  write(arguments.output_folder + "/plan.json", result.json);
+  if (!arguments.json.empty()) write(arguments.json, result.json);
+  write(arguments.output_folder + "/report.html", result.page);
+  if (!options.quiet) fmt::print("{}", result.printed);
+  if (result.learned) {
+    if (result.learned->added > 0) write(result.learned->path, result.learned->text);
+    if (!options.quiet) fmt::print("{} new cases in {}\n", result.learned->added, result.learned->path);
   }
   failed.throw_if_errors();
-  const std::vector<std::string> failures = report::plan_failures(done.result);
-  for (const std::string& failure : failures) print_error(failure);
-  return failures.empty() ? kDone : kNumbersDidNotWorkOut;
+  for (const std::string& sentence : result.unmachined) print_error(sentence);
+  return result.success ? kDone : kNumbersDidNotWorkOut;
 }
+
+}  // namespace
 
 void add_plan_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
   auto* command = app.add_subcommand("plan", "operations, tools, conditions and order from a blank and a part");
@@ -76,24 +64,24 @@ void add_plan_command(CLI::App& app, const GlobalOptions& options, Action& chose
   auto* output =
       command->add_option("-o,--output", arguments->output_folder, "folder for the results")->type_name("DIR");
   command
-      ->add_option("--operations", arguments->operations,
+      ->add_option("--operations", arguments->options.operations,
                    "go on from this table of operations (DIR/operations.toml of an earlier run, edited)")
       ->type_name("T.toml");
-  command->add_flag("--programs", arguments->programs,
+  command->add_flag("--programs", arguments->options.programs,
                     "also the programs of the plan, by copy milling, and their times by the feed model");
-  command->add_flag("--all-programs", arguments->all_programs,
+  command->add_flag("--all-programs", arguments->options.all_programs,
                     "programs of all three plans; their times decide which plan is taken");
   command->add_option("--json", arguments->json, "also write the figures to this file")->type_name("R.json");
   auto* cases = command->add_flag("--cases-error", arguments->cases_error,
                                   "print how well the cases predict each other, and plan nothing");
-  command->add_flag("--learn", arguments->learn, "add the conditions of the operations to the case base")
+  command->add_flag("--learn", arguments->options.learn, "add the conditions of the operations to the case base")
       ->excludes(cases);
   command->callback([arguments, output, &options, &chosen] {
     if (output->empty() && !arguments->cases_error) throw CLI::RequiredError("-o DIR or --cases-error");
     chosen = [arguments, &options] {
       if (!arguments->cases_error) {
         check_output_folder(arguments->output_folder);
-        check_outputs({arguments->json}, {arguments->plan, arguments->operations});
+        check_outputs({arguments->json}, {arguments->plan, arguments->options.operations});
       }
       return run_plan(*arguments, options);
     };

@@ -47,6 +47,26 @@ std::string progress_text(std::string_view what, std::optional<double> share, do
   return left ? out + time_text(*left, "left") : out;
 }
 
+RunOptions run_options(ProgressLine& line, const GlobalOptions& options, std::size_t* settled) {
+  RunOptions out;
+  out.nan_where_unknown = true;
+  out.progress = [&line](std::string_view what, double fraction) {
+    if (what == "done")
+      line.clear();
+    else if (std::isnan(fraction))
+      line.show(what);
+    else
+      line.show(what, fraction);
+    return true;
+  };
+  out.warn = [&line, &options, settled](const std::vector<Diagnostic>& warnings) {
+    line.clear();
+    if (settled) *settled += warnings.size();
+    settle(warnings, options);
+  };
+  return out;
+}
+
 ProgressLine::ProgressLine(const GlobalOptions& options, std::string what)
     : enabled_(events_wanted() || (!options.quiet && stderr_is_terminal())),
       what_(std::move(what)),

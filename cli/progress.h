@@ -9,6 +9,7 @@
 #include <string_view>
 #include <thread>
 
+#include "camber/run.h"
 #include "cli/global_options.h"
 
 namespace camber::cli {
@@ -50,6 +51,10 @@ class ProgressLine {
   Clock::time_point begin_;
   std::thread drawing_;  ///< steps that never call show() are seen to go on as well
 };
+
+/// Options of a call of the library: the line shows its progress, and its warnings are settled as settle() does;
+/// `settled`: how many.
+RunOptions run_options(ProgressLine& line, const GlobalOptions& options, std::size_t* settled = nullptr);
 
 /// " 43 % [##########..............] round 2: carving, 12 s left": seconds_so_far were needed for the share. Without a
 /// share "reading, 12 s so far".

@@ -1,181 +1,241 @@
-#include "cli/resegment_command.h"
+// camber resegment: runs of G1 laid out again in segments that are just long enough for the control; camber resegment
+// --part: a finishing raster on the offset surface of a part.
+#include "camber/resegment.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <memory>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-#include "base/json.h"
+#include "base/numbers.h"
 #include "base/output_file.h"
+#include "cli/command_line.h"
 #include "cli/console.h"
-#include "cli/program_figures.h"
+#include "cli/outputs.h"
+#include "cli/program_options.h"
 #include "cli/progress.h"
-#include "cli/rewrite_report.h"
-#include "feedmodel/control_options.h"
-#include "nc/language.h"
-#include "repath/fastest.h"
 
 namespace camber::cli {
 namespace {
 
-struct Report {
-  ProgramFigures before, after;
-  repath::ContourFigures contour_before;
-  const repath::Fastest& result;
-  double tolerance_mm;
-  const repath::DeviationFigures& measured;
-  std::string why;  ///< it is unchanged; empty: it is not
+constexpr double kFinestToleranceMm = 0.0005;
 
-  repath::Candidate chosen() const {
-    return result.gains ? result.tried[result.chosen] : repath::Candidate{.figures = contour_before};
-  }
+struct ResegmentArguments {
+  std::string program;
+  std::string machine;
+  std::string json;    ///< empty: none
+  std::string report;  ///< the page; empty: none
+  ResegmentOptions options{};
+  ReadOptions read{};
+};
 
-  std::string text() const {
-    const repath::ContourFigures now = chosen().figures;
-    std::string out = "                    before        after\n";
-    out += fmt::format("blocks         {:>11} {:>12}\n", before.blocks, after.blocks);
-    out += fmt::format("length         {:>8.1f} mm {:>9.1f} mm\n", before.length_mm, after.length_mm);
-    out += fmt::format("time           {:>9.1f} s {:>10.1f} s   {:+.1f} %\n", contour_before.time_s, now.time_s,
-                       100 * (now.time_s / contour_before.time_s - 1));
-    out += fmt::format("contour error  {:>8.1f} um {:>9.1f} um   predicted, largest while cutting\n",
-                       1000 * contour_before.contour_max_mm, 1000 * now.contour_max_mm);
-    out += fmt::format("               {:>8.1f} um {:>9.1f} um   rms\n", 1000 * contour_before.contour_rms_mm,
-                       1000 * now.contour_rms_mm);
-    out += fmt::format("largest deviation {:.4f} mm in {} rewritten runs, {} corners kept; {}, of {} tried\n",
-                       result.path.max_deviation_mm, result.path.runs.size(), result.path.corners, feeds_text(chosen()),
-                       result.tried.size());
-    if (result.tried.empty()) return out;
-    const repath::Candidate& fastest = result.tried[result.unbounded];
-    if (!result.limit.holds(fastest.figures) && fastest.figures.time_s < now.time_s)
-      out += fmt::format("{:.1f} s ({:+.1f} %) with a contour error of {:.1f} um, {:.1f} rms: --contour-mm {:.3f}\n",
-                         fastest.figures.time_s, 100 * (fastest.figures.time_s / contour_before.time_s - 1),
-                         1000 * fastest.figures.contour_max_mm, 1000 * fastest.figures.contour_rms_mm,
-                         fastest.figures.contour_max_mm + 0.0005);
-    return out;
-  }
+int say_within(bool within_limit, double limit_um) {
+  if (within_limit) return kDone;
+  fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the closest one was written\n",
+             limit_um);
+  return kNumbersDidNotWorkOut;
+}
 
-  std::string json() const {
-    Json report = {{"blocks_before", before.blocks},
-                   {"blocks_after", after.blocks},
-                   {"lines", after.lines},
-                   {"arcs", after.arcs},
-                   {"length_before_mm", before.length_mm},
-                   {"length_after_mm", after.length_mm},
-                   {"tolerance_mm", tolerance_mm},
-                   {"max_deviation_mm", result.path.max_deviation_mm},
-                   {"measured_deviation_mm", measured.max_mm},
-                   {"lines_before", before.lines},
-                   {"arcs_before", before.arcs},
-                   {"time_before_s", contour_before.time_s},
-                   {"time_after_s", chosen().figures.time_s},
-                   {"contour_before_um", of(contour_before)},
-                   {"contour_after_um", of(chosen().figures)},
-                   {"contour_limit_um", 1000 * result.limit.max_mm},
-                   {"contour_limit_rms_um", rms_limit()},
-                   {"within_contour_limit", result.within_limit},
-                   {"runs", result.path.runs.size()},
-                   {"corners", result.path.corners},
-                   {"gains", result.gains},
-                   {"length_factor", chosen().length_factor},
-                   {"feed_factor", chosen().feed_factor},
-                   {"corner_feed_share", chosen().corners.fraction},
-                   {"settle_s", chosen().corners.settle_s}};
-    if (!why.empty()) report["unchanged_because"] = why;
-    if (!result.tried.empty()) report["fastest_unbounded"] = of(result.tried[result.unbounded]);
-    report["tried"] = Json::array();
-    for (const auto& c : result.tried) report["tried"].push_back(of(c));
-    return report.dump(2) + "\n";
-  }
+/// Throws InputError. Returns kDone, or kNumbersDidNotWorkOut where no length keeps the axes as near as asked for.
+int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& options) {
+  ProgressLine progress(options, "timing the old blocks");
+  ResegmentOptions asked = arguments.options;
+  asked.page = !arguments.report.empty();
+  const Machine machine = read_machine(arguments.machine);
+  const ResegmentResult result =
+      resegment(read_program(arguments.program, arguments.read), machine, asked, run_options(progress, options));
+  write_file(asked.output, result.program);
+  if (!arguments.json.empty()) write_file(arguments.json, result.json);
+  if (asked.page) write_file(arguments.report, result.page);
+  if (!options.quiet) fmt::print("{}", result.printed);
+  return say_within(result.within_limit, result.limit_um);
+}
 
-  std::vector<report::Figure> figures() const {
-    const repath::ContourFigures now = chosen().figures;
-    const auto count = [](std::size_t n) { return static_cast<double>(n); };
-    return {{"blocks", count(before.blocks), count(after.blocks), "", 0, "blocks_{}"},
-            {"time", contour_before.time_s, now.time_s, "s", 1, "time_{}_s"},
-            {"contour error, largest", 1000 * contour_before.contour_max_mm, 1000 * now.contour_max_mm, "um", 1,
-             "contour_{}_um.max"},
-            {"contour error, rms", 1000 * contour_before.contour_rms_mm, 1000 * now.contour_rms_mm, "um", 1,
-             "contour_{}_um.rms"},
-            {"straight cuts", count(before.lines), count(after.lines), "", 0, "lines_before", "lines"},
-            {"arcs", count(before.arcs), count(after.arcs), "", 0, "arcs_before", "arcs"},
-            {"cutting length", before.length_mm, after.length_mm, "mm", 1, "length_{}_mm"}};
-  }
+struct RasterArguments {
+  std::string job;
+  std::string json;    ///< empty: none
+  std::string report;  ///< the page; empty: none
+  RasterOptions options{};
+};
+
+/// Throws InputError. Returns kDone, or kNumbersDidNotWorkOut where scallops stay higher than asked for, or no length
+/// keeps the axes as near as asked for.
+int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
+  ProgressLine progress(options, "reading");
+  RasterOptions asked = arguments.options;
+  asked.layout.page = !arguments.report.empty();
+  const Job job = read_unprogrammed_job(arguments.job);
+  std::vector<std::string> inputs = job.files();
+  std::erase(inputs, job.program_path());
+  inputs.push_back(asked.part);
+  check_outputs({asked.layout.output, arguments.json, arguments.report}, inputs);
+  const RasterResult result = raster(job, asked, run_options(progress, options));
+  write_file(asked.layout.output, result.program);
+  if (!arguments.json.empty()) write_file(arguments.json, result.json);
+  if (asked.layout.page) write_file(arguments.report, result.page);
+  if (!options.quiet) fmt::print("{}", result.printed);
+  if (result.scallops_too_high)
+    fmt::print(stderr,
+               "resegment: scallops of up to {:.4f} mm remain where the surface is steep across the rows, which lie no "
+               "closer than {:.3f} mm; another --direction-deg or --boundary may help\n",
+               result.largest_scallop_mm, result.closest_rows_mm);
+  return std::max(say_within(result.within_limit, result.limit_um),
+                  static_cast<int>(result.scallops_too_high ? kNumbersDidNotWorkOut : kDone));
+}
+
+CLI::Validator rectangle_validator() {
+  return CLI::Validator(
+      [](std::string& text) {
+        std::vector<double> corners;
+        for (std::size_t at = 0; at <= text.size();) {
+          const std::size_t end = std::min(text.find(',', at), text.size());
+          const auto value = parse_number(text.substr(at, end - at));
+          if (value && std::abs(*value) <= 1e6) corners.push_back(*value);
+          at = end + 1;
+        }
+        const bool right = corners.size() == 4 && std::count(text.begin(), text.end(), ',') == 3 &&
+                           corners[0] < corners[2] && corners[1] < corners[3];
+        return right ? std::string() : text + ": X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1 was expected";
+      },
+      "");
+}
+
+int print_raster_job(const std::string& path, const GlobalOptions& options) {
+  const Job job = read_unprogrammed_job(path);
+  settle(job.diagnostics(), options);
+  const Machine machine = job.machine();
+  fmt::print("# {}\n{}\n# {}\n{}", path, job.to_toml(), machine.path(), machine.to_toml());
+  return kDone;
+}
+
+/// The options of a raster on the command line.
+class RasterCommand {
+ public:
+  /// To be called when the command has the options of reading programs.
+  RasterCommand(CLI::App& command, CLI::Option& program);
+  /// --job or --part was given.
+  bool asked_for() const;
+  /// `shared`: the options that both kinds of resegment have. Throws CLI::RequiredError.
+  Action action(const ResegmentArguments& shared, const GlobalOptions& options) const;
 
  private:
-  Json rms_limit() const {
-    if (std::isinf(result.limit.rms_mm)) return nullptr;
-    return 1000 * result.limit.rms_mm;
-  }
-
-  static Json of(const repath::Candidate& c) {
-    return {
-        {"length_factor", c.length_factor}, {"feed_factor", c.feed_factor}, {"corner_feed_share", c.corners.fraction},
-        {"settle_s", c.corners.settle_s},   {"time_s", c.figures.time_s},   {"contour_um", of(c.figures)}};
-  }
-
-  static Json of(const repath::ContourFigures& f) {
-    return {{"max", 1000 * f.contour_max_mm}, {"rms", 1000 * f.contour_rms_mm}};
-  }
+  RasterOptions options_;
+  std::string job_path_;
+  CLI::Option *part_, *job_;
+  std::vector<CLI::Option*> required_;
 };
+
+RasterCommand::RasterCommand(CLI::App& command, CLI::Option& program) {
+  for (const char* of_programs : {"--units", "--block-skip", "--skip-switch", "--dialect", "--least-increments"})
+    command.get_option(of_programs)->needs(&program);
+  const std::string group = "A raster on a part instead of a program";
+  part_ = command.add_option("--part", options_.part, "the part as STL; default: the job's [part] mesh")
+              ->type_name("part.stl")
+              ->excludes(&program);
+  job_ = command.add_option("--job", job_path_, "job.toml with machine, tool and stock")
+             ->type_name("J.toml")
+             ->excludes(&program);
+  const auto with_job = [&](CLI::Option* option, const char* type) {
+    return option->needs(job_)->group(group)->type_name(type);
+  };
+  part_->needs(job_)->group(group);
+  job_->group(group);
+  required_ = {
+      with_job(command.add_option("--scallop-mm", options_.scallop_mm, "maximum scallop height between rows")
+                   ->check(number_from_to(1e-5, 10)),
+               "H"),
+      with_job(command.add_option("--feed-mm-per-min", options_.feed_mm_per_min, "programmed feed")
+                   ->check(number_from_to(0.1, 1e6)),
+               "F"),
+      with_job(
+          command.add_option("--spindle-rpm", options_.spindle_rpm, "spindle speed")->check(number_from_to(1, 1e6)),
+          "S")};
+  with_job(command.add_option("--tool", options_.tool, "tool of the job; required if it has several")
+               ->check(CLI::Range(0, 99999999)),
+           "N");
+  with_job(command.add_option("--direction-deg", options_.direction_deg, "direction of the rows, from +X; default 0")
+               ->check(number_from_to(-360, 360)),
+           "A");
+  with_job(command
+               .add_option_function<std::string>(
+                   "--boundary",
+                   [this](const std::string& text) {
+                     options_.boundary_mm.clear();
+                     for (std::size_t at = 0; at < text.size();) {
+                       const std::size_t end = std::min(text.find(',', at), text.size());
+                       options_.boundary_mm.push_back(parse_number(text.substr(at, end - at)).value_or(0));
+                       at = end + 1;
+                     }
+                   },
+                   "rectangle to machine; default: that of the part")
+               ->check(rectangle_validator()),
+           "X0,Y0,X1,Y1");
+  with_job(command
+               .add_option("--clearance-mm", options_.clearance_mm,
+                           "Z of moves over the part; default 5 mm above stock and part")
+               ->check(number_from_to(-1e6, 1e6)),
+           "Z");
+}
+
+bool RasterCommand::asked_for() const { return !part_->empty() || !job_->empty(); }
+
+Action RasterCommand::action(const ResegmentArguments& shared, const GlobalOptions& options) const {
+  if (!options.effective_config)
+    for (const CLI::Option* option : required_)
+      if (option->empty()) throw CLI::RequiredError(option->get_name());
+  if (shared.options.tolerance_mm < kFinestToleranceMm)
+    throw CLI::ValidationError("--tolerance-mm",
+                               fmt::format("{:g}: at least {:g} was expected for a raster, whose points are rounded to "
+                                           "0.0001 mm",
+                                           shared.options.tolerance_mm, kFinestToleranceMm));
+  RasterArguments arguments{job_path_, shared.json, shared.report, options_};
+  arguments.options.layout = shared.options;
+  return [arguments, &options] {
+    if (options.effective_config) return print_raster_job(arguments.job, options);
+    check_outputs({arguments.options.layout.output, arguments.json, arguments.report}, {});
+    return run_raster(arguments, options);
+  };
+}
 
 }  // namespace
 
-int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& options) {
-  Diagnostics diagnostics;
-  const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
-  const nc::InterpreterOptions interpreter = feedmodel::interpreter_options(machine, arguments.interpreter);
-  const nc::Program program =
-      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
-  const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
-  settle(diagnostics, options);
-
-  repath::FastestOptions fastest;
-  fastest.layout.tolerance_mm = arguments.tolerance_mm;
-  fastest.layout.length_mm = arguments.length_mm;
-  fastest.contour_mm = arguments.contour_mm;
-  fastest.interpreter = interpreter;
-  ProgressLine progress(options, "timing the old blocks");
-  const repath::ContourFigures before = repath::contour_figures(moves, moves, machine);
-  fastest.progress = [&](double fraction) { progress.show("timing new ones", fraction); };
-  const repath::Fastest result = repath::find_fastest(program, moves, machine, before, fastest);
-
-  Diagnostics again;
-  const nc::Program new_program =
-      nc::read_program(SourceText(arguments.output, result.path.text), program.language, again);
-  const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
-  again.throw_if_errors();
-  const auto measured = repath::measure_deviation(moves, new_moves, result.path.runs, arguments.tolerance_mm);
-  const bool unchanged = result.path.runs.empty();
-  const std::string runs =
-      unchanged ? repath::why_unchanged(program, moves, repath::RunKind::with_arcs) : std::string();
-  const std::string why = !unchanged ? ""
-                          : result.tried.empty()
-                              ? fmt::format("it is as near to its feed as its blocks allow ({})", runs)
-                              : fmt::format("no length of segments is faster ({})", runs);
-  const Report report{figures_of(program, moves),
-                      figures_of(new_program, new_moves),
-                      before,
-                      result,
-                      arguments.tolerance_mm,
-                      measured,
-                      why};
-  write_file(arguments.output, result.path.text);
-  if (!arguments.json.empty()) write_file(arguments.json, report.json());
-  if (!arguments.report.empty()) {
-    report::RewritePage page = rewrite_page_of(
-        {moves, new_moves, result.path.runs, arguments.tolerance_mm, result.path.max_deviation_mm, measured},
-        report.figures());
-    page.title = "Segments of " + arguments.program;
-    page.subtitle = rewrite_subtitle(arguments.program, arguments.output, arguments.tolerance_mm);
-    page.tables.push_back(tried_table(result.tried));
-    write_file(arguments.report, report::rewrite_page(page));
-  }
-  progress.clear();
-  if (!options.quiet) fmt::print("{}", report.text());
-  if (!options.quiet && !why.empty()) fmt::print("the program is unchanged: {}\n", why);
-  if (result.within_limit) return kDone;
-  fmt::print(stderr, "resegment: no length keeps the axes within {:.1f} um of the path; the closest one was written\n",
-             1000 * result.limit.max_mm);
-  return kNumbersDidNotWorkOut;
+void add_resegment_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("resegment", "divide runs of G1 into segments just long enough for the control");
+  auto arguments = std::make_shared<ResegmentArguments>();
+  auto* program = command->add_option("program", arguments->program, "NC program")->type_name("P.nc");
+  auto* machine =
+      command->add_option("--machine", arguments->machine, "machine.toml")->type_name("M.toml")->needs(program);
+  add_rewriting(*command, arguments->options.tolerance_mm, arguments->options.output, arguments->report);
+  command->add_option("--length-mm", arguments->options.length_mm, "segment length; default: the fastest one")
+      ->check(length_validator())
+      ->type_name("L");
+  command
+      ->add_option("--contour-mm", arguments->options.contour_mm,
+                   "maximum deviation of the predicted axes from the old path; default: maximum and rms not above "
+                   "those of the old blocks, or the tolerance; for a raster no limit")
+      ->check(length_validator())
+      ->type_name("C");
+  command->add_option("--json", arguments->json, "write the figures of all lengths tried")->type_name("R.json");
+  add_reading_options(*command, arguments->read);
+  add_language_options(*command, arguments->read);
+  const auto raster = std::make_shared<RasterCommand>(*command, *program);
+  command->callback([arguments, machine, raster, &options, &chosen] {
+    if (raster->asked_for()) {
+      chosen = raster->action(*arguments, options);
+      return;
+    }
+    if (arguments->program.empty()) throw CLI::RequiredError("program, or --job with --part,");
+    if (machine->empty()) throw CLI::RequiredError("--machine");
+    chosen = [arguments, &options] {
+      if (options.effective_config) return print_effective_machine(arguments->machine, options);
+      check_outputs({arguments->options.output, arguments->json, arguments->report},
+                    {arguments->program, arguments->machine});
+      return run_resegment(*arguments, options);
+    };
+  });
 }
 
 }  // namespace camber::cli

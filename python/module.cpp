@@ -57,7 +57,7 @@ camber::ReadOptions read_options(const std::optional<std::string>& units, bool b
           .skip_slash_blocks = block_skip,
           .skip_switches = skip_switches,
           .dialect = dialect,
-          .least_increments = least_increments,
+          .least_increments = least_increments ? std::optional(true) : std::nullopt,
           .tool_lengths_mm = tool_lengths,
           .work_offsets = work_offsets};
 }

@@ -14,6 +14,8 @@ inline namespace v0 {
 struct AdaptOptions {
   std::optional<double> time_limit_s{};  ///< scales the limits until the program takes no longer
   bool sweep = false;                    ///< also AdaptResult::sweep
+  bool page = false;                     ///< also AdaptResult::page
+  std::string output{};                  ///< name of the new program on the page
 };
 
 /// A load that [adapt] limits names, in the unit of its key.
@@ -52,6 +54,8 @@ struct AdaptResult {
   double limit_factor = 1;                ///< by which time_limit_s scaled the limits
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber adapt --json` writes them
+  std::string printed{};                  ///< the same, as `camber adapt` prints them
+  std::string page{};                     ///< the same, as `camber adapt --report` writes them
 };
 
 /// Writes no file. Throws InputError, Cancelled.

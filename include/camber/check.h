@@ -25,6 +25,14 @@ struct ToolUse {
   std::optional<Box> cutting{};  ///< extents of its cutting moves
 };
 
+/// What is written beside the figures. Files: empty: none.
+struct CheckOptions {
+  std::string page{};     ///< file: page with a picture of the path; also where an axis of a machine leaves its travel
+  std::string path{};     ///< file: the path's points as arrays for pictures; of a job the first program's
+  bool sheet = false;     ///< also CheckedJob::sheet
+  std::string program{};  ///< check_job: instead of the job's programs
+};
+
 struct CheckResult {
   std::size_t blocks = 0, blocks_with_words = 0;
   std::size_t rapids = 0, lines = 0, arcs = 0, dwells = 0;
@@ -35,6 +43,16 @@ struct CheckResult {
   std::optional<double> memory_GB{};      ///< that predict() of the job needs, about; of a job alone
   std::vector<Diagnostic> diagnostics{};  ///< warnings, in the order of the file
   std::string json{};                     ///< all figures, as `camber check --json` writes them
+  std::string printed{};                  ///< the same, as `camber check` prints them
+};
+
+/// All programs of a job.
+struct CheckedJob {
+  std::vector<CheckResult> programs{};
+  std::string sheet{};                    ///< set-up sheet, as `camber check --sheet` writes it
+  std::vector<Diagnostic> diagnostics{};  ///< warnings
+  std::string json{};                     ///< all figures, as `camber check --json` writes them
+  std::string printed{};                  ///< the same, as `camber check` prints them
 };
 
 /// Throws InputError when the program cannot be read or run.
@@ -43,6 +61,13 @@ CAMBER_API CheckResult check(const Program& program, const RunOptions& run = {})
 CAMBER_API CheckResult check(const Program& program, const Machine& machine, const RunOptions& run = {});
 /// Also checks the job's tools, stock and part.
 CAMBER_API CheckResult check(const Program& program, const Job& job, const RunOptions& run = {});
+
+CAMBER_API CheckResult check(const Program& program, const CheckOptions& options, const RunOptions& run);
+CAMBER_API CheckResult check(const Program& program, const Machine& machine, const CheckOptions& options,
+                             const RunOptions& run);
+/// The programs of a job one after the other, each on what the undeflected tools of those before it leave.
+CAMBER_API CheckedJob check_job(const std::string& job_path, const ReadOptions& read = {},
+                                const CheckOptions& options = {}, const RunOptions& run = {});
 
 }  // namespace v0
 }  // namespace camber

@@ -1,6 +1,7 @@
 #pragma once
 // Compensation: the program of a job with its path shifted against the form error.
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,9 +24,17 @@ struct CompensateOptions {
   std::optional<double> time_budget_percent{};
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   bool header = false, header_hash = false;  ///< write comment lines at the head of the program
-  /// File for the emitted program; the record by which verify() judges it is written beside it. As on the command line,
+  /// File for the emitted program; the record by which verify() judges it, and features.csv where the job has
+  /// [[feature]], are written beside it. As on the command line,
   /// nothing is written where no round is better than the given program, unless keep_anyway is set. Empty: no files.
   std::string output{};
+  bool dry_run = false;            ///< write no files; `output` is only the name of the program on the page
+  bool throw_if_unwritten = true;  ///< else CompensateResult::unwritten says what could not be written
+  bool page = false;               ///< also CompensateResult::page
+  /// Gets the steps of the loop and the fraction of each that is done; empty: RunOptions::progress gets them.
+  std::function<void(const std::string& step, double fraction)> step{};
+  /// Gets a sentence on what shifts are expected to leave, once the given program is measured; may be empty.
+  std::function<void(const std::string& sentence)> outlook{};
 };
 
 struct CompensationRound {
@@ -69,8 +78,13 @@ struct CompensateResult {
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double max_shift_mm = 0;
   std::vector<CompensatedPoint> surface{};
-  std::vector<Diagnostic> diagnostics{};  ///< warnings
-  std::string json{};                     ///< all figures, as `camber compensate --json` writes them
+  std::vector<Diagnostic> diagnostics{};          ///< warnings
+  std::string json{};                             ///< all figures, as `camber compensate --json` writes them
+  std::string printed{};                          ///< the same, as `camber compensate` prints them
+  std::string page{};                             ///< the same, as `camber compensate --report` writes them
+  bool written = false;                           ///< there is an output, and the program is in it
+  std::vector<Diagnostic> unwritten{};            ///< see CompensateOptions::throw_if_unwritten
+  std::vector<std::string> unknown_parameters{};  ///< of CompensateOptions::uncertainty; ignored
 };
 
 /// Throws InputError, BeyondModel, Cancelled.

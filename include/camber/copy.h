@@ -23,6 +23,8 @@ struct CopyOptions {
   std::string hardness{};                         ///< file: parts of the material that are harder; empty: none
   std::optional<double> stop_after_s{};           ///< the tool stops here, and is lifted
   std::string stock{};                            ///< file: what is left is written to it; empty: none
+  bool page = false;                              ///< also CopyResult::page
+  std::string output = "program.nc";              ///< name of the program in messages and on the page
 };
 
 /// Result of one [[copy]] table.
@@ -50,11 +52,16 @@ struct CopyResult {
   std::string log{};                        ///< changes of feed and depths, CSV
   std::vector<Diagnostic> diagnostics{};    ///< warnings
   std::string json{};                       ///< all figures, as `camber copy --json` writes them
+  std::string printed{};                    ///< the same, as `camber copy` prints them
+  std::string page{};                       ///< the same, as `camber copy --report` writes them
 };
 
 /// Makes the paths of a job's [[copy]] tables and cuts the stock along them. Writes no file but CopyOptions::stock.
 /// Throws InputError, Cancelled.
 CAMBER_API CopyResult copy(const std::string& job_path, const CopyOptions& options = {}, const RunOptions& run = {});
+
+/// Text of such a job and its machine with all defaults filled in. Throws InputError.
+CAMBER_API std::string copy_job_toml(const std::string& job_path, const RunOptions& run = {});
 
 }  // namespace v0
 }  // namespace camber

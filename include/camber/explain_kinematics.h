@@ -32,6 +32,8 @@ struct KinematicsExplanation {
 CAMBER_API KinematicsExplanation explain_kinematics(const Machine& machine);
 /// The same for the machine of a job.
 CAMBER_API KinematicsExplanation explain_kinematics(const Job& job);
+/// The same for a file: machine.toml or job.toml.
+CAMBER_API KinematicsExplanation explain_kinematics(const std::string& path);
 
 }  // namespace v0
 }  // namespace camber

@@ -32,6 +32,8 @@ struct PosePoint {
 
 struct FeedOptions {
   bool points = true;  ///< keep the points; 80 bytes each
+  std::string csv{};   ///< file: feed.csv, a row for each point; empty: none
+  bool page = false;   ///< also FeedResult::page, in programs that turn rotary axes alone
 };
 
 struct FeedResult {
@@ -42,6 +44,8 @@ struct FeedResult {
   std::vector<PosePoint> poses{};         ///< pose at each point, in programs that turn rotary axes; else empty
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber feed --json` writes them
+  std::string printed{};                  ///< the same, as `camber feed` prints them
+  std::string page{};                     ///< the same, as `camber feed --report` writes them
 };
 
 /// Throws InputError, Cancelled.

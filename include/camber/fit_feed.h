@@ -20,6 +20,9 @@ struct FeedTrace {
 struct FitFeedOptions {
   std::string columns{};  ///< column map of the servo traces (TOML); empty: Camber's own CSV
   bool update = false;    ///< refine `start`: its corner law stands, its numbers change where the traces determine them
+  bool leave_one_out = false;  ///< also FitFeedResult::left_out: every servo trace predicted by a fit on the others
+  bool block_time = false;     ///< also FitFeedResult::block_time_plot
+  bool page = false;           ///< also FitFeedResult::page; needs a servo trace that names its lines
 };
 
 struct FitParameter {
@@ -40,6 +43,10 @@ struct FitFeedResult {
   std::string message{};                  ///< how the fit ended
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber fit-feed --json` writes them
+  std::string printed{};                  ///< the same, as `camber fit-feed` prints them
+  std::string left_out{};                 ///< as it prints this
+  std::string block_time_plot{};          ///< speed against block length of the saturated runs, SVG
+  std::string page{};                     ///< as `camber fit-feed --report` writes it; may be empty
 };
 
 /// `start` provides the dialect of the control and the parameters that the traces do not determine. Throws InputError,

@@ -16,6 +16,8 @@ class CAMBER_API Machine {
   const std::string& path() const;
   /// Warnings found while reading.
   const std::vector<Diagnostic>& diagnostics() const;
+  /// How [source] of the file was read, a line each; empty: it has none.
+  const std::vector<std::string>& translation() const;
   /// Text of an equivalent machine.toml with all defaults filled in.
   std::string to_toml() const;
 

@@ -1,6 +1,7 @@
 #pragma once
 // From a blank and a part to operations: primitives, tools, conditions and order.
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,8 @@ struct PlanOptions {
   std::string operations{};   ///< file: an edited table of operations to go on from; empty: none
   bool programs = false;      ///< also the programs, by copy milling, and their times
   bool all_programs = false;  ///< makes the programs of all three plans; their times decide which one is taken
+  bool learn = false;         ///< also PlanResult::learned
+  bool page = false;          ///< also PlanResult::page
 };
 
 struct PlannedOperation {
@@ -42,6 +45,13 @@ struct PlanAlternative {
   bool taken = false;
 };
 
+/// The case base with the conditions of the operations as new cases; those that are there already are left out.
+struct LearnedCases {
+  std::string path{};  ///< its file
+  std::string text{};
+  std::size_t added = 0;
+};
+
 struct PlanResult {
   bool success = false;                         ///< everything is machined
   std::vector<std::string> unmachined{};        ///< what is not, and why
@@ -52,10 +62,18 @@ struct PlanResult {
   std::vector<std::pair<std::string, std::string>> files{};
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber plan --json` writes them
+  std::string printed{};                  ///< the same, as `camber plan` prints them
+  std::string page{};                     ///< the same, as report.html
+  std::optional<LearnedCases> learned{};
+  std::vector<std::string> translation{};  ///< how [source] of the machine file was read; see Machine::translation
 };
 
 /// Plans what a plan.toml describes. Writes no file. Throws InputError, Cancelled.
 CAMBER_API PlanResult plan(const std::string& path, const PlanOptions& options = {}, const RunOptions& run = {});
+
+/// How well the cases of a plan.toml's case base predict each other, as `camber plan --cases-error` prints it. Throws
+/// InputError.
+CAMBER_API std::string cases_error(const std::string& path, const RunOptions& run = {});
 
 }  // namespace v0
 }  // namespace camber

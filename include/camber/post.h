@@ -21,6 +21,7 @@ struct PostOptions {
   bool one_degree = false;          ///< divide by angles of the rotary axes instead
   double retract_mm = 50;           ///< along the tool, where axes turn back
   std::optional<int> decimals{};    ///< decimals of lengths and angles; default: the program's, at least 4
+  std::string output{};             ///< name of the new program in messages; empty: that of the given one
 };
 
 struct PostResult {
@@ -31,6 +32,7 @@ struct PostResult {
   std::size_t turns_back_in_cuts = 0;     ///< number of them in a cut
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber post --json` writes them
+  std::string printed{};                  ///< the same, as `camber post` prints them
 };
 
 /// Throws InputError, also where the new program would leave the travel of an axis; Cancelled.

@@ -26,6 +26,8 @@ struct PostureOptions {
   double lead_deg = 10, tilt_deg = 0;  ///< lead-tilt
   double max_tilt_deg = 75;
   double least_angle_deg = 10;  ///< smallest angle between tool and normal
+  bool page = false;            ///< also PostureResult::page
+  std::string output{};         ///< name of the new program in messages; empty: that of the given one
 };
 
 struct PostureFigures {
@@ -49,6 +51,8 @@ struct PostureResult {
   std::vector<PostureFigures> overhangs{};  ///< with overhang_step_mm: from the given one to the shortest
   std::vector<Diagnostic> diagnostics{};    ///< warnings
   std::string json{};                       ///< all figures, as `camber posture --json` writes them
+  std::string printed{};                    ///< the same, as `camber posture` prints them; empty: blocked
+  std::string page{};                       ///< the same, as `camber posture --report` writes them; empty: blocked
 };
 
 /// The program is that of three axes; the job names machine, tool and part. Throws InputError, Cancelled;

@@ -88,6 +88,9 @@ struct PredictOptions {
   std::string trace{};
   std::string columns{};  ///< column map of the trace, as of `camber fit-feed --columns`; empty: none
   bool meshes = false;    ///< also fill the meshes of the result, and write them where there is an output_folder
+  bool rows = true;       ///< fill the vectors and meshes of the result; else its figures alone
+  std::string stock{};    ///< file: the machined stock; empty: none
+  bool throw_if_unwritten = true;  ///< else PredictResult::unwritten says what of output_folder could not be written
 };
 
 /// Prediction of the feed model beside the measured motion of PredictOptions::trace.
@@ -114,6 +117,8 @@ struct PredictResult {
   std::vector<std::string> doubts{};           ///< reasons why the figures are not reliable; empty: none
   std::vector<Diagnostic> diagnostics{};       ///< warnings
   std::string json{};                          ///< all figures, as `camber predict --json` writes them
+  std::string printed{};                       ///< the same, as `camber predict` prints them
+  std::vector<Diagnostic> unwritten{};         ///< see PredictOptions::throw_if_unwritten
   std::vector<SpindleLoadRow> spindle_load{};  ///< by tool, then by line
   Mesh error_mesh{};                           ///< the surface with its form error; empty unless PredictOptions::meshes
   Mesh machined_mesh{};                        ///< the closed surface of the machined part; the same

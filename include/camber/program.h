@@ -1,5 +1,6 @@
 #pragma once
 // An NC program in memory.
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,12 +17,19 @@ struct ReadOptions {
   std::optional<bool> inch{};        ///< unit of a program without G20 and G21; not given: mm, with a warning
   bool skip_slash_blocks = false;    ///< skip blocks that begin with / or /1 to /9
   std::vector<int> skip_switches{};  ///< skip blocks that begin with /N, N = 1 to 9; / is /1
-  std::string dialect{};          ///< fanuc, haas, mazak, linuxcnc, ...; empty: the machine's, or what the text shows
-  bool least_increments = false;  ///< X1000 without a point is 1000 least increments (1 mm), not 1000 mm
+  std::string dialect{};  ///< fanuc, haas, mazak, linuxcnc, ...; empty: the machine's, or what the text shows
+  /// X1000 without a point is 1000 least increments (1 mm), not 1000 mm; not given: as the machine has it
+  std::optional<bool> least_increments{};
   std::map<int, double> tool_lengths_mm{};  ///< lengths by H, gauge line to tip; to check travel
   /// Machine coordinates of work offsets, by name ("G54", "G59.1", "G54.1P7"): X, Y, Z in mm; A, B, C in degrees may
   /// follow.
   std::map<std::string, std::vector<double>> work_offsets{};
+};
+
+/// Blocks that hold a word; cutting moves that are lines and arcs, and their length.
+struct ProgramCounts {
+  std::size_t blocks = 0, lines = 0, arcs = 0;
+  double length_mm = 0;
 };
 
 /// A value; copies share the text.

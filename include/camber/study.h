@@ -1,6 +1,7 @@
 #pragma once
 // A study: one job varied over a grid of its keys, as study.toml says.
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct StudyCase {
   std::string json{};                 ///< the case's figures: what study.json reads
   std::vector<std::string> values{};  ///< one per key
   bool done = false;                  ///< page and figures are there
+  std::string command_line{};         ///< of its command, for a shell
 };
 
 struct Study {
@@ -28,6 +30,14 @@ struct Study {
   std::string csv{};                      ///< the table of what is done so far
   std::string json{};                     ///< the same, as `camber study --json` writes it
   std::string page{};                     ///< the same as study.html
+  std::string printed{};                  ///< the same, as `camber study` prints it
+  std::size_t doubtful = 0;               ///< cases whose numbers did not work out
+
+  /// Reads what has been done since: the table and the cases' `done`.
+  CAMBER_API void read_results();
+
+  struct Impl;
+  std::shared_ptr<const Impl> impl{};
 };
 
 /// Reads a study and writes the job of each case into `folder`; computes nothing. Cases that are done, by this library

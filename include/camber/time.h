@@ -27,20 +27,30 @@ struct TimeUse {
 struct TimeOptions {
   std::string trace{};                ///< trace of trace of a measured run to compare with; empty: none
   std::vector<std::string> sweeps{};  ///< "axis.x.acceleration_mm_per_s2=3500:15000:4"
+  std::string cases{};                ///< cases.toml: machines to compare; empty: none
+  bool page = false;                  ///< also TimeResult::page
 };
 
 struct TimeResult {
   TimeUse all{};
   std::vector<TimeUse> tools{};  ///< in the order of their first use
   std::vector<TimeUse> sweep{};  ///< all tools, one row per combination of the swept values
+  std::vector<TimeUse> cases{};  ///< all tools, one row per case
   std::vector<std::string> notes{};
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber time --json` writes them
+  std::string printed{};                  ///< the same, as `camber time` prints them
+  std::string page{};                     ///< the same, as `camber time --report` writes them
 };
 
 /// Throws InputError, Cancelled, std::invalid_argument for a sweep that cannot be read.
 CAMBER_API TimeResult time(const Program& program, const Machine& machine, const TimeOptions& options = {},
                            const RunOptions& run = {});
+/// The same of cases that name their machines.
+CAMBER_API TimeResult time(const Program& program, const TimeOptions& options, const RunOptions& run = {});
+
+/// Throws std::invalid_argument, with a sentence for the user, where TimeOptions::sweeps cannot have this text.
+CAMBER_API void check_sweep(const std::string& text);
 
 }  // namespace v0
 }  // namespace camber

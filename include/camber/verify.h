@@ -20,7 +20,16 @@ struct VerifyResult {
   double machine_time_s = 0;
   std::vector<Diagnostic> diagnostics{};  ///< warnings
   std::string json{};                     ///< all figures, as `camber compensate --verify --json` writes them
+  std::string printed{};                  ///< the same, as `camber compensate --verify` prints them
 };
+
+/// The files of an emitted program.
+struct EmittedFiles {
+  std::string program{}, record{};
+  std::string job{};  ///< that verify() writes
+};
+/// `place`: as for verify(). Throws InputError as verify() does of the record.
+CAMBER_API EmittedFiles emitted_files(const std::string& place);
 
 /// `place`: a program that `camber compensate` or CompensateOptions::output wrote, or its folder. Reads the record
 /// beside it, predicts the program as it lies on disk against the same target, and writes the job for that beside it

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "api/commands/feed.h"
+#include "api/feed_points.h"
 #include "base/units.h"
 #include "kinematics/program_joints.h"
 #include "machine/machine.h"

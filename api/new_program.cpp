@@ -1,0 +1,28 @@
+#include "api/new_program.h"
+
+#include "api/rotary_program.h"
+#include "kinematics/travel_check.h"
+#include "simulate/machine_collisions.h"
+
+namespace camber::api {
+
+NewProgram read_new_program(const machine::Machine& machine, const std::string& name, const std::string& text,
+                            const nc::InterpreterOptions& interpreter) {
+  Diagnostics again;
+  NewProgram out;
+  out.text = nc::read_program(SourceText(name, text), again);
+  out.moves = nc::interpret(out.text, rotary_interpreter_options(machine, interpreter), again);
+  again.throw_if_errors();
+  return out;
+}
+
+void check_new_program(const machine::Machine& machine, const machine::Job* job, const nc::Program& given,
+                       nc::Interpretation moves, const std::vector<std::uint32_t>& block_of_line,
+                       Diagnostics& diagnostics) {
+  for (nc::Move& move : moves.moves) move.block = block_of_line[move.block];
+  kinematics::check_travel(machine, given, moves, diagnostics);
+  if (diagnostics.has_errors() || !job || machine.bodies.empty()) return;
+  simulate::check_machine_collisions(*job, given, moves, diagnostics);
+}
+
+}  // namespace camber::api
