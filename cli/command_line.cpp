@@ -158,8 +158,10 @@ int run(int argc, const char* const* argv) {
   add_merge_command(app, options, chosen);
   add_copy_command(app, options, chosen);
   add_plan_command(app, options, chosen);
-  add_force_commands(app, options, chosen);
-  add_dynamics_commands(app, options, chosen);
+  add_fit_parts_command(app, options, chosen);
+  add_fit_force_command(app, options, chosen);
+  add_lobes_command(app, options, chosen);
+  add_fit_modes_command(app, options, chosen);
   add_ui_command(app, options, chosen);
   add_help(app, chosen);
   try {

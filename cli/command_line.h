@@ -33,8 +33,10 @@ void add_study_command(CLI::App& app, const GlobalOptions& options, Action& chos
 void add_merge_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_copy_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_plan_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
-void add_force_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);
-void add_dynamics_commands(CLI::App& app, const GlobalOptions& options, Action& chosen);  ///< lobes, fit-modes
+void add_fit_parts_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_fit_force_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_lobes_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
+void add_fit_modes_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 void add_ui_command(CLI::App& app, const GlobalOptions& options, Action& chosen);
 /// completion, and an example for each of the subcommands that are there; to be called last.
 void add_help(CLI::App& app, Action& chosen);

@@ -1,117 +1,73 @@
-#include "cli/fit_force_command.h"
+// camber fit-force: a material from dynamometer logs.
+#include "camber/fit_force.h"
 
-#include <cmath>
+#include <memory>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
-#include "base/json.h"
 #include "base/output_file.h"
-#include "base/units.h"
-#include "calib/fit_force.h"
+#include "cli/command_line.h"
 #include "cli/console.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
-#include "machine/force_law.h"
-#include "machine/material_reader.h"
 
 namespace camber::cli {
 namespace {
 
-using calib::FitForceResult;
+struct FitForceArguments {
+  std::vector<std::string> logs;
+  std::vector<std::string> jobs;  ///< one for each log, or one for all
+  std::string output;             ///< material.toml
+  std::string json;               ///< empty: none
+};
 
-std::vector<calib::MeasuredLog> read_logs(const FitForceArguments& arguments, Diagnostics& diagnostics) {
-  std::vector<calib::MeasuredLog> logs;
-  for (std::size_t i = 0; i < arguments.logs.size(); ++i) {
-    const auto& job = arguments.jobs.size() == 1 ? arguments.jobs.front() : arguments.jobs[i];
-    const machine::ForceLog how = machine::read_force_log(job, diagnostics);
-    logs.push_back(calib::read_measured_log(arguments.logs[i], how, diagnostics));
-  }
-  return logs;
-}
-
-std::string component(bool has, double value) {
-  return has ? fmt::format("{:>9.2f}", value) : fmt::format("{:>9}", "-");
-}
-
-void print(const FitForceResult& result) {
-  fmt::print("{:<20} {:>14} {:<6} {:>11}\n", "parameter", "value", "unit", "std error");
-  for (const auto& p : result.parameters)
-    fmt::print("{:<20} {:>14.6g} {:<6} {:>11}  {}\n", p.name, p.value, p.unit,
-               p.std_error ? fmt::format("{:.2g}", *p.std_error) : "-", p.note);
-  for (const auto& r : result.run_out)
-    if (!r.note.empty()) fmt::print("run-out of {}: {}\n", r.log, r.note);
-  fmt::print("mean force on the tool, N: x feed, y left of it, z up\n{:>27} {:>28}  cut\n", "measured", "fitted");
-  for (const auto& c : result.cuts) {
-    for (const Vec3* f : {&c.measured_N, &c.model_N})
-      for (int a = 0; a < 3; ++a)
-        fmt::print("{}{}", component(c.has[static_cast<std::size_t>(a)], (*f)[a]), a == 2 ? " " : "");
-    fmt::print(" {}\n", c.name);
-  }
-  fmt::print("residual {:.3g} N rms", result.residual_rms_N);
-  if (result.held_out_rms_N) fmt::print(", held out {:.3g} N rms", *result.held_out_rms_N);
-  fmt::print("; {}\n", result.message);
-}
-
-Json components(const std::array<bool, 3>& has, const Vec3& f) {
-  Json out = Json::array();
-  for (int a = 0; a < 3; ++a) out.push_back(has[static_cast<std::size_t>(a)] ? Json(f[a]) : Json(nullptr));
-  return out;
-}
-
-Json report_of(const FitForceResult& result) {
-  Json report;
-  for (const auto& p : result.parameters)
-    report["parameters"].push_back({{"name", p.name},
-                                    {"value", p.value},
-                                    {"unit", p.unit},
-                                    {"std_error", p.std_error ? Json(*p.std_error) : Json(nullptr)},
-                                    {"note", p.note}});
-  report["held_out"] = {{"rms_N", result.held_out_rms_N ? Json(*result.held_out_rms_N) : Json(nullptr)}};
-  report["fitted"] = {{"rms_N", result.residual_rms_N}};
-  report["run_out"] = Json::array();
-  for (const auto& r : result.run_out)
-    report["run_out"].push_back({{"log", r.log},
-                                 {"offset_um", 1000 * r.offset_mm},
-                                 {"angle_deg", deg_from_rad(r.angle_rad)},
-                                 {"offset_std_error_um", 1000 * r.offset_std_error_mm},
-                                 {"note", r.note}});
-  for (const auto& c : result.cuts)
-    report["cuts"].push_back({{"cut", c.name},
-                              {"measured_mean_N", components(c.has, c.measured_N)},
-                              {"fitted_mean_N", components(c.has, c.model_N)}});
-  report["converged"] = result.converged;
-  report["plausible"] = result.plausible;
-  report["message"] = result.message;
-  return report;
-}
-
-std::string material_file(const FitForceArguments& arguments, const FitForceResult& result) {
-  std::string out = fmt::format("# Fitted by camber fit-force to {}; residual {:.3g} N rms.\n",
-                                fmt::join(arguments.logs, ", "), result.residual_rms_N);
-  for (const auto& p : result.parameters)
-    if (p.std_error) out += fmt::format("# {}: {:.6g} +- {:.2g} {}\n", p.name, p.value, *p.std_error, p.unit);
-  // More digits than the fit can know would only hide it.
-  machine::Material rounded = result.material;
-  for (const auto& c : machine::description(rounded.law).coefficients)
-    rounded.*c.field = std::stod(fmt::format("{:.6g}", rounded.*c.field));
-  return out + "[material]\n" + machine::material_text(rounded);
+/// Throws InputError. Returns kDone, or kNumbersDidNotWorkOut when the fit did not converge or makes no sense (the
+/// material is written all the same, and a sentence says so).
+int run_fit_force(const FitForceArguments& arguments, const GlobalOptions& options) {
+  std::vector<ForceLogFile> logs;
+  for (std::size_t i = 0; i < arguments.logs.size(); ++i)
+    logs.push_back({arguments.logs[i], arguments.jobs.size() == 1 ? arguments.jobs.front() : arguments.jobs[i]});
+  ProgressLine progress(options, "reading");
+  const FitForceResult result = fit_force(logs, run_options(progress, options));
+  if (!options.quiet) fmt::print("{}", result.printed);
+  write_file(arguments.output, result.material);
+  if (!arguments.json.empty()) write_file(arguments.json, result.json);
+  if (!result.success) print_error(result.message);
+  return result.success ? kDone : kNumbersDidNotWorkOut;
 }
 
 }  // namespace
 
-int run_fit_force(const FitForceArguments& arguments, const GlobalOptions& options) {
-  Diagnostics diagnostics;
-  const auto logs = read_logs(arguments, diagnostics);
-  settle(diagnostics, options);
-  ProgressLine progress(options, "fitting");
-  const FitForceResult result = calib::fit_force(logs);
-  progress.clear();
-  if (!options.quiet) print(result);
-  write_file(arguments.output, material_file(arguments, result));
-  if (!arguments.json.empty()) write_file(arguments.json, report_of(result).dump(2) + "\n");
-  const bool worked = result.converged && result.plausible;
-  if (!worked) print_error(result.message);
-  return worked ? kDone : kNumbersDidNotWorkOut;
+void add_fit_force_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("fit-force", "fit cutting force coefficients to dynamometer logs");
+  auto arguments = std::make_shared<FitForceArguments>();
+  command->add_option("--log", arguments->logs, "dynamometer log: samples, or a table of means")
+      ->required()
+      ->expected(1)
+      ->take_all()
+      ->type_name("FORCE.csv");
+  command
+      ->add_option("--job", arguments->jobs,
+                   "job.toml with the tool and [force_log]; once for each log, or once for all")
+      ->required()
+      ->expected(1)
+      ->take_all()
+      ->type_name("J.toml");
+  command->add_option("-o,--output", arguments->output, "the fitted material")->required()->type_name("material.toml");
+  command->add_option("--json", arguments->json, "the figures")->type_name("R.json");
+  command->callback([arguments, &options, &chosen] {
+    if (arguments->jobs.size() != 1 && arguments->jobs.size() != arguments->logs.size())
+      throw CLI::ValidationError("--job",
+                                 fmt::format("{} logs and {} jobs; one job for all or one for each was expected",
+                                             arguments->logs.size(), arguments->jobs.size()));
+    chosen = [arguments, &options] {
+      std::vector<std::string> inputs = arguments->logs;
+      inputs.insert(inputs.end(), arguments->jobs.begin(), arguments->jobs.end());
+      check_outputs({arguments->output, arguments->json}, inputs);
+      return run_fit_force(*arguments, options);
+    };
+  });
 }
 
 }  // namespace camber::cli

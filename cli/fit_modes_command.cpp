@@ -1,71 +1,30 @@
-#include "cli/fit_modes_command.h"
+// camber fit-modes: natural modes of a tool from a tap test.
+#include "camber/fit_modes.h"
 
-#include <cmath>
+#include <algorithm>
+#include <memory>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-#include "base/json.h"
 #include "base/numbers.h"
 #include "base/output_file.h"
+#include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "dynamics/fit_modes.h"
-#include "machine/mode_reader.h"
-#include "report/response_svg.h"
 
 namespace camber::cli {
 namespace {
 
-using dynamics::FittedMode;
-using dynamics::ModeFit;
+struct FitModesArguments {
+  std::string response;
+  std::string output = "modes.toml", plot, json;  ///< plot, json: empty: none
+  FitModesOptions options{};
+};
 
-void print(const ModeFit& fit) {
-  fmt::print("{:>12} {:>10} {:>10} {:>10} {:>12} {:>10}\n", "frequency/Hz", "std error", "damping/%", "std error",
-             "stiff./N/um", "std error");
-  for (const FittedMode& m : fit.modes)
-    fmt::print("{:>12.3f} {:>10.2g} {:>10.4f} {:>10.2g} {:>12.5g} {:>10.2g}\n", m.frequency_hz.value,
-               m.frequency_hz.error, 100 * m.damping_ratio.value, 100 * m.damping_ratio.error,
-               m.stiffness_N_per_mm.value / 1000, m.stiffness_N_per_mm.error / 1000);
-  fmt::print("noise {:.2g} % of each value and {:.2g} % of the peak; misfit {:.2f} times the noise\n",
-             100 * fit.noise_of_value, 100 * fit.noise_of_peak, fit.misfit);
-}
-
-std::string tables_of(const FitModesArguments& a, const ModeFit& fit) {
-  std::string out =
-      fmt::format("# Fitted by camber fit-modes to {}; misfit {:.2f} times the noise.\n", a.response, fit.misfit);
-  std::vector<machine::Mode> modes;
-  for (const char axis : a.direction)
-    for (const FittedMode& m : fit.modes) {
-      // More digits than the fit can know would only hide it.
-      const auto rounded = [](double v) { return std::stod(fmt::format("{:.6g}", v)); };
-      modes.push_back({axis == 'x' ? Vec2::UnitX() : Vec2::UnitY(), rounded(m.frequency_hz.value),
-                       rounded(m.damping_ratio.value), rounded(m.stiffness_N_per_mm.value)});
-    }
-  for (const FittedMode& m : fit.modes)
-    out += fmt::format("# {:.6g} +- {:.2g} Hz, {:.4g} +- {:.2g} %, {:.5g} +- {:.2g} N/um\n", m.frequency_hz.value,
-                       m.frequency_hz.error, 100 * m.damping_ratio.value, 100 * m.damping_ratio.error,
-                       m.stiffness_N_per_mm.value / 1000, m.stiffness_N_per_mm.error / 1000);
-  return out + machine::modes_text(modes, fmt::format("tool.{}", a.tool));
-}
-
-Json json_of(const ModeFit& fit) {
-  Json out = {{"misfit", fit.misfit},
-              {"noise_percent_of_value", 100 * fit.noise_of_value},
-              {"noise_percent_of_peak", 100 * fit.noise_of_peak},
-              {"modes", Json::array()}};
-  for (const FittedMode& m : fit.modes)
-    out["modes"].push_back({{"frequency_Hz", m.frequency_hz.value},
-                            {"frequency_std_error_Hz", m.frequency_hz.error},
-                            {"damping_percent", 100 * m.damping_ratio.value},
-                            {"damping_std_error_percent", 100 * m.damping_ratio.error},
-                            {"stiffness_N_per_um", m.stiffness_N_per_mm.value / 1000},
-                            {"stiffness_std_error_N_per_um", m.stiffness_N_per_mm.error / 1000}});
-  return out;
-}
-
-}  // namespace
-
-bool parse_band(const std::string& text, FitModesArguments& into) {
+/// "FROM:TO", Hz, into the band. False where it is not.
+bool parse_band(const std::string& text, FitModesOptions& into) {
   const auto colon = std::min(text.find(':'), text.size());
   const auto from = parse_number(std::string_view(text).substr(0, colon));
   const auto to = colon < text.size() ? parse_number(std::string_view(text).substr(colon + 1)) : std::nullopt;
@@ -74,21 +33,55 @@ bool parse_band(const std::string& text, FitModesArguments& into) {
   return true;
 }
 
+/// Throws InputError. Returns kDone, or kNumbersDidNotWorkOut where no mode was found; then nothing is written.
 int run_fit_modes(const FitModesArguments& a, const GlobalOptions& options) {
-  const dynamics::FrequencyResponse response = dynamics::read_frequency_response(a.response);
-  const ModeFit fit = dynamics::fit_modes(response, {.modes = a.modes, .from_hz = a.from_hz, .to_hz = a.to_hz});
-  if (fit.modes.empty()) {
+  const FitModesResult result = fit_modes(a.response, a.options);
+  if (result.modes.empty()) {
     print_error(
         fmt::format("{}: no mode stands out of the noise{}; a band (--band) around the resonances or another "
                     "number of modes (--modes) was expected",
-                    a.response, a.modes ? fmt::format(" with {} of them", *a.modes) : ""));
+                    a.response, a.options.modes ? fmt::format(" with {} of them", *a.options.modes) : ""));
     return kNumbersDidNotWorkOut;
   }
-  if (!options.quiet) print(fit);
-  write_file(a.output, tables_of(a, fit));
-  if (!a.plot.empty()) write_file(a.plot, report::response_svg(response, fit));
-  if (!a.json.empty()) write_file(a.json, json_of(fit).dump(2) + "\n");
+  if (!options.quiet) fmt::print("{}", result.printed);
+  write_file(a.output, result.tables);
+  if (!a.plot.empty()) write_file(a.plot, result.plot);
+  if (!a.json.empty()) write_file(a.json, result.json);
   return kDone;
+}
+
+}  // namespace
+
+void add_fit_modes_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {
+  auto* command = app.add_subcommand("fit-modes", "fit natural modes of a tool to a tap test");
+  auto a = std::make_shared<FitModesArguments>();
+  command->add_option("response", a->response, "frequency response at the tip: CSV, or universal file (58)")
+      ->required()
+      ->type_name("TAP.csv");
+  command->add_option("--tool", a->options.tool, "number of the tool; 1")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+  command
+      ->add_option("--direction", a->options.direction, "of the tap: x (default) or y; xy: the tool is alike in both")
+      ->check(CLI::IsMember({"x", "y", "xy"}))
+      ->type_name("x|y|xy");
+  command->add_option("--modes", a->options.modes, "number of modes; by the response itself where it is not given")
+      ->check(CLI::Range(1, dynamics::kMostModes))
+      ->type_name("N");
+  auto band = std::make_shared<std::string>();
+  command->add_option("--band", *band, "frequencies that count, Hz, as in 200:4000")->type_name("FROM:TO");
+  command->add_option("-o,--output", a->output, "[[tool.N.mode]] tables for a job; modes.toml")
+      ->type_name("MODES.toml");
+  command->add_option("--plot", a->plot, "a picture of response and fit")->type_name("P.svg");
+  command->add_option("--json", a->json, "the figures, with standard errors")->type_name("R.json");
+  command->callback([a, band, &options, &chosen] {
+    if (!band->empty() && !parse_band(*band, a->options))
+      throw CLI::ValidationError("--band", fmt::format("{}: FROM:TO in Hz, as in 200:4000, was expected", *band));
+    chosen = [a, &options] {
+      check_outputs({a->output, a->plot, a->json}, {a->response});
+      return run_fit_modes(*a, options);
+    };
+  });
 }
 
 }  // namespace camber::cli

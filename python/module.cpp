@@ -284,4 +284,5 @@ PYBIND11_MODULE(_camber, module) {
   camber_python::add_copy(module);
   camber_python::add_plan(module);
   camber_python::add_five_axis(module);
+  camber_python::add_fits(module);
 }

@@ -15,6 +15,7 @@ void add_functions(pybind11::module_& module);
 void add_copy(pybind11::module_& module);
 void add_plan(pybind11::module_& module);
 void add_five_axis(pybind11::module_& module);  ///< post, posture
+void add_fits(pybind11::module_& module);       ///< compress, resegment, raster, protocol, lobes, fit_modes, fit_force
 
 /// Converts an argument of a function: an object, or the path of a file that holds it.
 camber::Program program_of(const pybind11::handle& object);

@@ -8,7 +8,10 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "machine/force_law.h"
+#include "machine/material_reader.h"
 #include "machine/number_key.h"
 #include "machine/tool_reader.h"
 #include "report/html_report.h"
@@ -191,6 +194,9 @@ std::string fit_parts_page(const FitPartsResult& result) {
   return html_report(data);
 }
 
+namespace {
+
+/// Comments "# NAME: VALUE +- ERROR UNIT" of the parameters whose name `belongs`: what compensate --uncertainty reads.
 std::string parameter_comments(const FitPartsResult& result, bool (*belongs)(const std::string& name)) {
   std::string out;
   for (const auto& p : result.parameters)
@@ -199,6 +205,7 @@ std::string parameter_comments(const FitPartsResult& result, bool (*belongs)(con
   return out;
 }
 
+/// Tools as fitted, a table for each clamping: tools.toml of the folder.
 std::string fitted_tools_toml(const FitPartsResult& result) {
   std::string out;
   std::map<int, std::set<std::string>> seen;
@@ -214,6 +221,29 @@ std::string fitted_tools_toml(const FitPartsResult& result) {
       out += text;
     }
   return out;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> fit_parts_files(const FitPartsResult& result,
+                                                                 const std::vector<std::string>& jobs) {
+  const std::string head = fmt::format("# Fitted by camber fit-parts to {}; residual {:.3g} um rms.\n",
+                                       fmt::join(jobs, ", "), result.rms_um);
+  const auto of_machine = [](const std::string& n) { return n.starts_with("axis."); };
+  const auto of_tools = [](const std::string& n) { return n.starts_with("tool."); };
+  const auto of_material = [](const std::string& n) { return machine::find_coefficient(n) != nullptr; };
+  const machine::Job& first = result.jobs.front();
+  return {{"machine.toml", head + parameter_comments(result, of_machine) + machine::to_toml(first.machine)},
+          {"tools.toml",
+           head + parameter_comments(result, of_tools) +
+               fmt::format("# For the job, what the fit leaves uncertain:\n# [model_error]\n"
+                           "# deflection_percent = {:.3g}\n# contour_percent = {:.3g}\n"
+                           "# size_um = {:.3g}\n",
+                           100 * result.error.deflection, 100 * result.error.contour, 1000 * result.error.size_mm) +
+               fitted_tools_toml(result)},
+          {"material.toml",
+           head + parameter_comments(result, of_material) + "[material]\n" + machine::material_text(first.material)},
+          {"report.html", fit_parts_page(result)}};
 }
 
 }  // namespace camber::report

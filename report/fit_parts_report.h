@@ -1,6 +1,8 @@
 #pragma once
 // What camber fit-parts tells: JSON, text and page.
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/json.h"
 #include "calib/fit_parts.h"
@@ -18,10 +20,8 @@ std::string fit_parts_text(const calib::FitPartsResult& result, bool suggest);
 /// Tables, and the residuals over feed and stick-out as a drawing.
 std::string fit_parts_page(const calib::FitPartsResult& result);
 
-/// Comments "# NAME: VALUE +- ERROR UNIT" of the parameters whose name `belongs`: what compensate --uncertainty reads.
-std::string parameter_comments(const calib::FitPartsResult& result, bool (*belongs)(const std::string& name));
-
-/// Tools as fitted, a table for each clamping: tools.toml of the folder.
-std::string fitted_tools_toml(const calib::FitPartsResult& result);
+/// machine.toml, tools.toml, material.toml and report.html: names and texts. `jobs`: names of the files.
+std::vector<std::pair<std::string, std::string>> fit_parts_files(const calib::FitPartsResult& result,
+                                                                 const std::vector<std::string>& jobs);
 
 }  // namespace camber::report
