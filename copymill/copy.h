@@ -22,7 +22,7 @@
 //                     felt_hardness remembers where the material was harder than expected.
 // 6. part_check       says how deep the path goes into the part and what is left on it.
 //
-// Units: mm, s, N, rad; positions are tips in the frame of the part. docs/copy.md and docs/copy-load.md have the
+// Units: mm, s, N, rad; positions are tips in the frame of the part. docs/copy.md has the
 // reasons, the rule of the load and the figures.
 #include <functional>
 #include <memory>
