@@ -18,7 +18,7 @@ namespace {
 void check_section(const SectionOptions& options) {
   if (options.section < 1 || options.section > options.sections)
     throw std::invalid_argument("section: 1 ... sections was expected");
-  if (options.round < 1 || options.round > api::kMaxSectionRounds || (options.round > 1 && !options.solve))
+  if (options.round < 1 || options.round > distribute::kMaxSectionRounds || (options.round > 1 && !options.solve))
     throw std::invalid_argument("round: 1 ... 12 was expected, 1 without solve");
 }
 
@@ -37,11 +37,11 @@ SectionResult v0::predict_section(const std::string& job_path, const std::string
     Diagnostics found, of_run;
     const machine::Job job = machine::read_job(job_path, found);
     run.settle(found);
-    const api::PartKey key = api::part_key(job, options.sections, options.forces_at);
-    api::PartFiles store(folder, key);
-    api::SectionRun section(job, key, store, steps_of(run), of_run);
-    const api::PartName name{options.solve ? api::PartStage::solve : api::PartStage::sweep, options.round,
-                             options.section - 1, options.sections};
+    const distribute::PartKey key = distribute::part_key(job, options.sections, options.forces_at);
+    distribute::PartFiles store(folder, key);
+    distribute::SectionRun section(job, key, store, steps_of(run), of_run);
+    const distribute::PartName name{options.solve ? distribute::PartStage::solve : distribute::PartStage::sweep,
+                                    options.round, options.section - 1, options.sections};
     if (options.round == 1 || section.is_static()) {
       out.computed = options.solve ? section.solve(name.section, name.round) : section.sweep(name.section);
       out.part = store.path(name);
@@ -61,13 +61,13 @@ PredictResult v0::merge(const std::string& folder, const RunOptions& run_options
   PredictResult out;
   api::Run run(run_options);
   run.execute([&] {
-    const api::PartKey of_parts = api::find_parts(folder);
+    const distribute::PartKey of_parts = distribute::find_parts(folder);
     Diagnostics of_job, found, of_cut, failed;
     const machine::Job job = machine::read_job(of_parts.job_path, of_job);
     run.settle(of_job);
-    const api::PartKey key = api::part_key(job, of_parts.sections, of_parts.forces_at);
-    api::PartFiles store(folder, key);
-    const int round = std::max(1, api::last_round(folder, key));
+    const distribute::PartKey key = distribute::part_key(job, of_parts.sections, of_parts.forces_at);
+    distribute::PartFiles store(folder, key);
+    const int round = std::max(1, distribute::last_round(folder, key));
     const api::PredictRequest request{.folder = folder, .forces_at = key.forces_at, .progress = steps_of(run)};
     api::MergedJob merged = api::merge_parts(job, key, round, store, request, found, of_cut);
     run.settle(found);

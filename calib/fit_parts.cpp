@@ -697,7 +697,7 @@ Job coarser(Job job) {
 std::vector<std::optional<PredictedSize>> predict_features(const Job& job) {
   Diagnostics found;
   const simulate::Setup setup = simulate::set_up(job, {}, {found, found, found});
-  const simulate::Prediction p = simulate::predict_surface(job, setup.target, setup.program, {}, "");
+  const simulate::Prediction p = simulate::predict_surface(setup.predictor, job, setup.target, setup.program, {}, "");
   std::vector<std::optional<PredictedSize>> out;
   for (const auto& r : inspect::evaluate(job.features, p.surface, job.simulation.voxel_mm))
     out.push_back(r.predicted_mm ? std::optional(PredictedSize{*r.predicted_mm, r.deflection_um / 1000})

@@ -77,7 +77,8 @@ std::string features_path(const std::string& output) {
 /// `diagnostics`: of the job. `json`: the figures; empty where there are none. `emitted`: whether a program was
 /// written.
 int compensate_program(const machine::Job& given, Diagnostics diagnostics, const CompensateArguments& arguments,
-                       const GlobalOptions& options, std::string& json, bool& emitted) {
+                       const GlobalOptions& options, const simulate::Predictor& predictor, std::string& json,
+                       bool& emitted) {
   const auto begin = std::chrono::steady_clock::now();
   ProgressLine progress(options, "reading");
   bool in_rounds = false;  // their share is that of the whole run
@@ -92,6 +93,7 @@ int compensate_program(const machine::Job& given, Diagnostics diagnostics, const
     const RoundsProgress::Whole whole = rounds.at(what, share);
     progress.show_whole(whole.what, whole.share);
   };
+  request.predictor = predictor;
   request.outlook = [&](const compensate::Outlook& outlook) {
     progress.clear();
     if (!options.quiet) fmt::print("{}\n", report::outlook_sentence(outlook));
@@ -162,7 +164,8 @@ std::string own_name(const std::string& path, const std::string& program) {
 /// Each program on what the compensated one before it has left; the emitted programs have the names of the given ones,
 /// in the folder of the output.
 int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& diagnostics,
-                       const CompensateArguments& arguments, const GlobalOptions& options) {
+                       const CompensateArguments& arguments, const GlobalOptions& options,
+                       const simulate::Predictor& predictor) {
   if (!arguments.measured.empty()) {
     print_error("--measured belongs to one program, and the job has several");
     return kCommandLineWrong;
@@ -188,7 +191,7 @@ int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& dia
     own.json.clear();
     if (!options.quiet) fmt::print("{}{}\n", i > 0 ? "\n" : "", one.program);
     bool emitted = false;
-    status = std::max(status, compensate_program(one, i == 0 ? diagnostics : Diagnostics(), own, options,
+    status = std::max(status, compensate_program(one, i == 0 ? diagnostics : Diagnostics(), own, options, predictor,
                                                  results.emplace_back(), emitted));
     outputs.push_back(emitted ? own.output : "");
     if (i + 1 == all.programs.size()) break;
@@ -203,13 +206,14 @@ int compensate_in_turn(const machine::JobOfPrograms& all, const Diagnostics& dia
 
 }  // namespace
 
-int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
+int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options,
+                   const simulate::Predictor& predictor) {
   Diagnostics diagnostics;
   const machine::JobOfPrograms all = machine::read_job_of_programs(arguments.job, diagnostics);
-  if (all.programs.size() > 1) return compensate_in_turn(all, diagnostics, arguments, options);
+  if (all.programs.size() > 1) return compensate_in_turn(all, diagnostics, arguments, options, predictor);
   std::string json;
   bool emitted = false;
-  return compensate_program(all.job, std::move(diagnostics), arguments, options, json, emitted);
+  return compensate_program(all.job, std::move(diagnostics), arguments, options, predictor, json, emitted);
 }
 
 }  // namespace camber::cli

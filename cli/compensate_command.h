@@ -28,6 +28,7 @@ api::CompensateRequest compensate_request(const CompensateArguments& arguments);
 
 /// Throws InputError. Returns kDone or kNumbersDidNotWorkOut (a static solution did not settle, or the residual is
 /// over the tolerance).
-int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options);
+int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options,
+                   const simulate::Predictor& predictor = simulate::predict);
 
 }  // namespace camber::cli

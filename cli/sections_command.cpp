@@ -21,7 +21,7 @@ api::StepProgress section_steps(ProgressLine& progress) {
   };
 }
 
-int merge_and_write(const machine::Job& job, const api::PartKey& key, int round, api::PartStore& store,
+int merge_and_write(const machine::Job& job, const distribute::PartKey& key, int round, distribute::PartStore& store,
                     const MergeArguments& arguments, const GlobalOptions& options,
                     std::chrono::steady_clock::time_point begin) {
   Diagnostics found, of_cut;
@@ -62,7 +62,7 @@ int merge_and_write(const machine::Job& job, const api::PartKey& key, int round,
 namespace {
 
 /// One part.
-int run_part(api::SectionRun& run, const SectionsArguments& arguments, const GlobalOptions& options,
+int run_part(distribute::SectionRun& run, const SectionsArguments& arguments, const GlobalOptions& options,
              const std::string& path) {
   if (arguments.round > 1 && !run.is_static()) {
     if (!options.quiet) fmt::print("rigid coupling has one round\n");
@@ -88,12 +88,12 @@ int run_sections(const SectionsArguments& arguments, const GlobalOptions& option
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
   settle(diagnostics, options);
   Diagnostics of_run;
-  const api::PartKey key = api::part_key(job, arguments.sections, arguments.forces_at);
-  api::PartFiles store(arguments.output_folder, key);
-  api::SectionRun run(job, key, store, section_steps(progress), of_run);
+  const distribute::PartKey key = distribute::part_key(job, arguments.sections, arguments.forces_at);
+  distribute::PartFiles store(arguments.output_folder, key);
+  distribute::SectionRun run(job, key, store, section_steps(progress), of_run);
   if (arguments.section > 0) {
-    const api::PartName name{arguments.solve ? api::PartStage::solve : api::PartStage::sweep, arguments.round,
-                             arguments.section - 1, arguments.sections};
+    const distribute::PartName name{arguments.solve ? distribute::PartStage::solve : distribute::PartStage::sweep,
+                                    arguments.round, arguments.section - 1, arguments.sections};
     const int status = run_part(run, arguments, options, store.path(name));
     progress.clear();
     settle(of_run, options);
@@ -103,7 +103,7 @@ int run_sections(const SectionsArguments& arguments, const GlobalOptions& option
   int round = 1;
   for (bool again = true; again; ++round) {
     for (std::size_t s = 0; s < arguments.sections; ++s) run.solve(s, round);
-    again = run.is_static() && round < api::kMaxSectionRounds && (round == 1 || run.solved_again(round) > 0);
+    again = run.is_static() && round < distribute::kMaxSectionRounds && (round == 1 || run.solved_again(round) > 0);
     if (!again) break;
   }
   progress.clear();
@@ -113,14 +113,14 @@ int run_sections(const SectionsArguments& arguments, const GlobalOptions& option
 
 int run_merge(const MergeArguments& arguments, const GlobalOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const api::PartKey found = api::find_parts(arguments.folder);
+  const distribute::PartKey found = distribute::find_parts(arguments.folder);
   Diagnostics diagnostics;
   const machine::Job job = machine::read_job(found.job_path, diagnostics);
   settle(diagnostics, options);
-  const api::PartKey key = api::part_key(job, found.sections, found.forces_at);
-  api::PartFiles store(arguments.folder, key);
-  return merge_and_write(job, key, std::max(1, api::last_round(arguments.folder, key)), store, arguments, options,
-                         begin);
+  const distribute::PartKey key = distribute::part_key(job, found.sections, found.forces_at);
+  distribute::PartFiles store(arguments.folder, key);
+  return merge_and_write(job, key, std::max(1, distribute::last_round(arguments.folder, key)), store, arguments,
+                         options, begin);
 }
 
 }  // namespace camber::cli

@@ -30,7 +30,7 @@ struct MergeArguments {
 };
 
 /// Joins the parts, writes the folder of a prediction, and says what camber predict says.
-int merge_and_write(const machine::Job& job, const api::PartKey& key, int round, api::PartStore& store,
+int merge_and_write(const machine::Job& job, const distribute::PartKey& key, int round, distribute::PartStore& store,
                     const MergeArguments& arguments, const GlobalOptions& options,
                     std::chrono::steady_clock::time_point begin);
 api::StepProgress section_steps(ProgressLine& progress);

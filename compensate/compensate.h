@@ -152,6 +152,7 @@ struct CompensateOptions {
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< parameters for Compensation::band
+  simulate::Predictor predictor = simulate::predict;
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.
   std::function<std::string(const CompensationResult&)> header{};
 };

@@ -16,7 +16,7 @@ std::vector<Vec3> nominal_bending(const machine::Job& job, const simulate::Setup
   simulate::PredictOptions options;
   options.progress = progress;
   std::vector<Vec3> out;
-  for (const simulate::StampLoad& load : simulate::predict(rigid, given.target, nominal, options).cut.loads)
+  for (const simulate::StampLoad& load : given.predictor(rigid, given.target, nominal, options).cut.loads)
     out.push_back(load.contact_deflection_mm);
   return out;
 }

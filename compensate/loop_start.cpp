@@ -63,7 +63,8 @@ Loop::Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOp
       setup_(
           simulate::set_up(job,
                            {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); },
-                            .clearance = true},
+                            .clearance = true,
+                            .predictor = options.predictor},
                            {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
       trials_(job_, setup_) {
   simulate::check_clearance(job_, setup_, diagnostics_);

@@ -31,7 +31,7 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
   std::vector<bool> reach;
   const auto judge = [&](const Emitted* program, const std::string& what) {
     const auto& machined = program ? program->program : given.program;
-    auto prediction = simulate::predict_surface(other, target, machined, progress,
+    auto prediction = simulate::predict_surface(given.predictor, other, target, machined, progress,
                                                 fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
     Observed observed = observe(path, job, given.program, machined, program ? program->map : MoveMap(),
                                 prediction.surface, stamps, {}, made_by.first_cuts);
@@ -65,7 +65,7 @@ std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& gr
   const auto& text = (emitted ? emitted->program : given.program).text.source;
   const auto program = simulate::simulate_motion(text, other, {}, repeated);
   const auto prediction =
-      simulate::predict_surface(other, given.target, program, progress, "uncertainty: " + group.name);
+      simulate::predict_surface(given.predictor, other, given.target, program, progress, "uncertainty: " + group.name);
   std::vector<double> out;
   out.reserve(after.size());
   for (std::size_t i = 0; i < after.size(); ++i) out.push_back(prediction.surface[i].error_mm - after[i].error_mm);

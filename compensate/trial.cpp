@@ -73,7 +73,7 @@ simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& prog
                                           const std::function<void(double)>& progress) const {
   simulate::PredictOptions options;
   options.progress = progress;
-  return simulate::predict(job_, given_.target, program, options);
+  return given_.predictor(job_, given_.target, program, options);
 }
 
 Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,

@@ -192,7 +192,7 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
   simulate::check_clearance(job, setup, diagnostics);
   diagnostics.throw_if_errors();
   const simulate::Prediction p =
-      simulate::predict_surface(job, setup.target, setup.program, progress, "the emitted program");
+      simulate::predict_surface(setup.predictor, job, setup.target, setup.program, progress, "the emitted program");
   Verification out;
   out.doubts = simulate::doubts(job, setup.program, p);
   if (simulate::beyond_model(p)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));

@@ -20,11 +20,10 @@
 #include "simulate/memory.h"
 #include "simulate/never_turns.h"
 #include "simulate/operations.h"
+#include "simulate/path_stretch.h"
 #include "simulate/pieces.h"
 #include "simulate/region.h"
-#include "simulate/section_programs.h"
 #include "simulate/setup_checks.h"
-#include "simulate/shared_prediction.h"
 #include "simulate/validity.h"
 #include "simulate/verdict.h"
 
@@ -175,8 +174,9 @@ SimulatedProgram read_moves(SourceText source, const Job& job, Diagnostics& diag
   return out;
 }
 
-void time_path(SimulatedProgram& program, const Job& job, const feedmodel::SampleSink& samples) {
-  removal::StampBuilder builder(program.moves, job.tools, program.selected, program.holes, program.part_path());
+void time_path(SimulatedProgram& program, const Job& job, const feedmodel::SampleSink& samples,
+               const removal::StampSink& stamps) {
+  removal::StampBuilder builder(program.moves, job.tools, program.selected, program.holes, program.part_path(), stamps);
   const auto take = [&](const auto& run, std::span<const feedmodel::TimedSample> timed) {
     builder.add(run);
     if (samples) samples(timed);
@@ -501,6 +501,7 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const PathStretch& pa
       cut_options_of(job, {.coupling = piece.coupling, .progress = progress, .surface = piece.surface}, tool);
   options.blank = piece.before_run;
   options.progress = progress;
+  options.known = piece.known;
   if (run.kind != removal::RunKind::milling) {
     assert(piece.from == 0 && piece.count == run.count);
     return cut_run_of(stock, job, run, stamps, {}, options);
@@ -544,9 +545,6 @@ PathLoads predict_loads(const Job& job, const removal::Stock& blank, const Simul
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
-  if (const CrewScope::Current* now = current_crew();
-      now && !options.turn_from && options.chip_ratio == 0 && !target.part_yields)
-    return predict_together(job, target, program, now->crew, now->memory, options.progress);
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {

@@ -180,6 +180,10 @@ struct PredictOptions {
 Prediction predict(const machine::Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options);
 
+/// What makes the predictions of a command: predict(), or processes that share them (distribute/shared_prediction.h).
+using Predictor = std::function<Prediction(const machine::Job& job, const Target& target,
+                                           const SimulatedProgram& program, const PredictOptions& options)>;
+
 /// What a program does to the tool, without the surface that it leaves.
 struct LoadOptions {
   machine::Coupling coupling = machine::Coupling::static_;

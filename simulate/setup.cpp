@@ -53,7 +53,7 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
       check_heights(job, programs.program, programs.original ? &*programs.original : nullptr, findings.target);
   findings.target.throw_if_errors();
   Target target = make_target(job, programs.of_target(), findings.target, work);
-  return {std::move(programs.program), std::move(programs.original), std::move(target), cleared};
+  return {std::move(programs.program), std::move(programs.original), std::move(target), cleared, options.predictor};
 }
 
 namespace {
@@ -114,12 +114,12 @@ std::function<void(double)> progress_of(const Progress& progress, std::string wh
   return [progress, what = std::move(what)](double fraction) { progress(what, fraction); };
 }
 
-Prediction predict_surface(const machine::Job& job, const Target& target, const SimulatedProgram& program,
-                           const Progress& progress, std::string what) {
+Prediction predict_surface(const Predictor& predictor, const machine::Job& job, const Target& target,
+                           const SimulatedProgram& program, const Progress& progress, std::string what) {
   PredictOptions options;
   options.contacts = false;
   options.progress = progress_of(progress, std::move(what));
-  return predict(job, target, program, options);
+  return predictor(job, target, program, options);
 }
 
 }  // namespace camber::simulate

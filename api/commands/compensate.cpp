@@ -28,7 +28,8 @@ machine::Job as_measured(const machine::Job& job, const CompensateRequest& reque
                          const simulate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
   if (request.measured.empty()) return job;
   const auto points = compensate::read_measured(request.measured);
-  fit = compensate::fit_measured(job, request.measured, points, request.measured_program, diagnostics, progress);
+  fit = compensate::fit_measured(job, request.measured, points, request.measured_program, diagnostics, progress,
+                                 request.predictor);
   return compensate::softened(job, fit->scale);
 }
 
@@ -53,6 +54,7 @@ compensate::CompensateOptions options_of(const CompensateRequest& request) {
   compensate::CompensateOptions options;
   options.progress = request.progress;
   options.outlook = request.outlook;
+  options.predictor = request.predictor;
   for (const auto& u : request.uncertainty)
     for (auto& group : compensate::read_uncertainty(u)) options.uncertainty.push_back(std::move(group));
   options.max_stock_crossings = request.max_stock_crossings;

@@ -22,6 +22,7 @@ struct CompensateRequest {
   std::vector<std::string> levers{};    ///< by name, instead of the job's; empty: the job's
   simulate::Progress progress;
   std::function<void(const compensate::Outlook&)> outlook{};  ///< see compensate::CompensateOptions
+  simulate::Predictor predictor = simulate::predict;          ///< likewise
 };
 
 struct CompensatedJob {

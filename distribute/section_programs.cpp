@@ -1,4 +1,4 @@
-#include "simulate/section_programs.h"
+#include "distribute/section_programs.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,9 +6,10 @@
 
 #include "removal/cutter.h"
 #include "removal/nominal_path.h"
-#include "removal/stamp_sink.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
+
+using namespace simulate;
 
 using machine::Job;
 using removal::Region;
@@ -29,8 +30,7 @@ void give_up_text(SimulatedProgram& program) {
 
 /// Goes along the path; of it the program keeps the runs.
 void follow_path(SimulatedProgram& program, const Job& job, const removal::StampSink& sink) {
-  const removal::StampSinkScope scope(sink);
-  time_path(program, job, {});
+  time_path(program, job, {}, sink);
   program.path.stamps = {};
 }
 
@@ -252,4 +252,4 @@ std::optional<Programs> SectionPrograms::take() {
   return std::move(read_);
 }
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute
