@@ -18,7 +18,6 @@
 #include "report/report_data.h"
 #include "report/spindle_load.h"
 #include "report/summary.h"
-#include "simulate/moves_of_axes.h"
 
 namespace camber {
 namespace {
@@ -139,12 +138,13 @@ PredictResult v0::predict(const Job& given, const PredictOptions& options, const
           report::form_error_points(program, prediction, prepared.traced_run()), job.simulation.voxel_mm));
     }
     if (options.feed && prepared.traced)
-      api::points_sink(program.moves, result.feed)(prepared.traced->samples);
-    else if (options.feed && program.rotary)
-      feedmodel::predict_feed(simulate::moves_of_axes(*program.rotary, job.machine), job.machine,
-                              api::points_sink(program.moves, result.feed));
+      api::points_sink(program.moves_in_part(), result.feed)(prepared.traced->samples);
+    else if (options.feed && program.turns())
+      feedmodel::predict_feed(program.moves_of_axes(), job.machine,
+                              api::points_sink(program.moves_in_part(), result.feed));
     else if (options.feed)
-      feedmodel::predict_feed(program.moves, job.machine, api::points_sink(program.moves, result.feed));
+      feedmodel::predict_feed(program.moves_in_part(), job.machine,
+                              api::points_sink(program.moves_in_part(), result.feed));
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.json = machine::with_assumptions(
         report::with_features(

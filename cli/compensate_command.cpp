@@ -44,7 +44,7 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
     emitted_job.operations = compensate::moved_ranges(result.operations, result.block_of_line);
   const auto after = simulate::simulate_motion(SourceText(job.program, result.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
-  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves;
+  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves_in_part();
   report::write_html_report(arguments.report,
                             report::compensate_report(job, result, {before, rows(before), result.loads_before},
                                                       {after, rows(after), result.loads_after}, arguments.output,

@@ -11,8 +11,8 @@
 #include "cli/program_figures.h"
 #include "cli/progress.h"
 #include "cli/rewrite_report.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
+#include "kinematics/control_options.h"
 #include "nc/language.h"
 #include "nc/summary.h"
 #include "repath/compress.h"
@@ -120,7 +120,7 @@ int run_compress(const CompressArguments& arguments, const GlobalOptions& option
   nc::InterpreterOptions interpreter = arguments.interpreter;
   if (!arguments.machine.empty()) {
     machine = machine::read_machine(arguments.machine, diagnostics);
-    interpreter = feedmodel::interpreter_options(*machine, interpreter);
+    interpreter = kinematics::interpreter_options(*machine, interpreter);
   }
   const nc::Program program =
       nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);

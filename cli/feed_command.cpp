@@ -10,8 +10,8 @@
 #include "cli/feed_page.h"
 #include "cli/progress.h"
 #include "feedmodel/feed_csv.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/joint_map.h"
 #include "machine/assumptions.h"
 #include "machine/machine.h"
 #include "nc/language.h"
@@ -29,7 +29,7 @@ int run_feed(const FeedArguments& arguments, const GlobalOptions& options) {
   const nc::Interpretation moves =
       api::moves_of_feed(program, machine, arguments.interpreter, arguments.output, diagnostics);
   progress.clear();
-  if (!arguments.report.empty() && !feedmodel::has_rotary_motion(moves, machine))
+  if (!arguments.report.empty() && !kinematics::has_rotary_motion(moves, machine))
     fail_on_file(arguments.program,
                  "turns no rotary axis of the machine, and the page of feed shows those; camber check --report shows "
                  "programs of three axes",

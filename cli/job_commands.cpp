@@ -60,7 +60,7 @@ void add_section_options(CLI::App& command, SectionsArguments& parts, CLI::Optio
       ->type_name("sweep|solve")
       ->needs(section);
   command.add_option("--round", parts.round, "of solving in static coupling")
-      ->check(CLI::Range(1, api::kMaxSectionRounds))
+      ->check(CLI::Range(1, distribute::kMaxSectionRounds))
       ->type_name("K")
       ->needs(section);
 }

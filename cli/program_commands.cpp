@@ -29,7 +29,7 @@
 #include "cli/time_command.h"
 #include "cli/validators.h"
 #include "cli/work_offset_option.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "machine/machine.h"
 
 namespace camber::cli {
@@ -101,7 +101,7 @@ void add_language_options(CLI::App& command, nc::InterpreterOptions& interpreter
       .add_option_function<ControlRow>(
           "--dialect",
           [&interpreter](ControlRow row) {
-            interpreter.dialect = feedmodel::dialect_of(machine::control_kinds()[static_cast<std::size_t>(row)]);
+            interpreter.dialect = kinematics::dialect_of(machine::control_kinds()[static_cast<std::size_t>(row)]);
           },
           fmt::format("control of the program; default: from its text (O-words: {}, M97: {}), else {}, with P of a "
                       "dwell in seconds",

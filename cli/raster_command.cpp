@@ -15,7 +15,8 @@
 #include "cli/progress.h"
 #include "cli/raster_report.h"
 #include "cli/rewrite_report.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
+#include "kinematics/machine_program.h"
 #include "machine/unprogrammed_job.h"
 #include "repath/fastest.h"
 #include "repath/raster.h"
@@ -95,7 +96,7 @@ std::optional<double> top_of_stock_mm(const machine::StockDescription& stock) {
 /// Where feed begins: in a stock that is left all over alike a little above it, else above the blank.
 repath::RasterProgram program_of(const RasterArguments& arguments, const machine::Job& job, const machine::Tool& tool,
                                  double part_top_mm, int decimals) {
-  repath::RasterProgram out{.dialect = feedmodel::dialect_of(job.machine.control.kind),
+  repath::RasterProgram out{.dialect = kinematics::dialect_of(job.machine.control.kind),
                             .tool = tool,
                             .spindle_rpm = arguments.spindle_rpm,
                             .feed_mm_per_min = arguments.feed_mm_per_min,
@@ -117,16 +118,10 @@ repath::RasterProgram program_of(const RasterArguments& arguments, const machine
   return out;
 }
 
-struct Read {
-  nc::Program program;
-  nc::Interpretation moves;
-};
-
-Read read(const std::string& name, const std::string& text, const nc::InterpreterOptions& options) {
+kinematics::MachineProgram read(const std::string& name, const std::string& text, const machine::Machine& machine) {
   Diagnostics ours;
-  Read out;
-  out.program = nc::read_program(SourceText(name, text), ours);
-  out.moves = nc::interpret(out.program, options, ours);
+  kinematics::MachineProgram out =
+      kinematics::open_program(SourceText(name, text), machine, {.rotary = kinematics::RotaryWords::never}, ours);
   ours.throw_if_errors();
   return out;
 }
@@ -252,10 +247,10 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
     chains.push_back(repath::points_of(drop, chain, raster_options));
     compared.push_back(repath::points_of(drop, chain, raster_options, kComparedStepMm));
   }
-  const nc::InterpreterOptions interpreter = feedmodel::interpreter_options(job.machine, std::nullopt);
-  const Read whole = read(arguments.output, repath::raster_text(program, chains), interpreter);
-  const Read constant = read(arguments.output, repath::raster_text(program, compared), interpreter);
-  const repath::ContourFigures before = repath::contour_figures(constant.moves, whole.moves, job.machine);
+  const kinematics::MachineProgram whole = read(arguments.output, repath::raster_text(program, chains), job.machine);
+  const kinematics::MachineProgram constant =
+      read(arguments.output, repath::raster_text(program, compared), job.machine);
+  const repath::ContourFigures before = repath::contour_figures(constant.commanded(), whole.commanded(), job.machine);
 
   repath::FastestOptions fastest;
   fastest.layout.tolerance_mm = repath::tolerance_left_mm(raster_options);
@@ -263,21 +258,20 @@ int run_raster(const RasterArguments& arguments, const GlobalOptions& options) {
   fastest.contour_mm = arguments.contour_mm > 0 ? arguments.contour_mm : std::numeric_limits<double>::infinity();
   fastest.keep_old = false;
   fastest.fewest_blocks = true;
-  fastest.interpreter = interpreter;
-  const repath::Fastest result = repath::find_fastest(whole.program, whole.moves, job.machine, before, fastest);
+  const repath::Fastest result = repath::find_fastest(whole.text(), whole.commanded(), job.machine, before, fastest);
 
-  const Read now = read(arguments.output, result.path.text, interpreter);
+  const kinematics::MachineProgram now = read(arguments.output, result.path.text, job.machine);
   const Report report{arguments,
                       raster,
                       result,
                       before,
-                      figures_of(constant.program, constant.moves),
-                      figures_of(now.program, now.moves)};
+                      figures_of(constant.text(), constant.commanded()),
+                      figures_of(now.text(), now.commanded())};
   write_file(arguments.output, result.path.text);
   if (!arguments.json.empty()) write_file(arguments.json, report.json());
   if (!arguments.report.empty()) {
     report::RewritePage page =
-        raster_page({mesh, raster, result, constant.moves, now.moves, report.before, report.after, before,
+        raster_page({mesh, raster, result, constant.commanded(), now.commanded(), report.before, report.after, before,
                      report.chosen().figures, arguments.scallop_mm, arguments.tolerance_mm, kComparedStepMm});
     page.title = "Raster on " + part;
     page.subtitle = rewrite_subtitle(part, arguments.output, arguments.tolerance_mm);

@@ -10,7 +10,8 @@
 #include "cli/program_figures.h"
 #include "cli/progress.h"
 #include "cli/rewrite_report.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
+#include "kinematics/machine_program.h"
 #include "nc/language.h"
 #include "repath/fastest.h"
 
@@ -122,27 +123,28 @@ struct Report {
 int run_resegment(const ResegmentArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   const machine::Machine machine = machine::read_machine(arguments.machine, diagnostics);
-  const nc::InterpreterOptions interpreter = feedmodel::interpreter_options(machine, arguments.interpreter);
-  const nc::Program program =
-      nc::read_program(SourceText::read(arguments.program), nc::language_asked_for(arguments.interpreter), diagnostics);
-  const nc::Interpretation moves = nc::interpret(program, interpreter, diagnostics);
+  kinematics::ReadingOptions reading{.given = arguments.interpreter, .rotary = kinematics::RotaryWords::never};
+  const auto given = kinematics::open_program(SourceText::read(arguments.program), machine, reading, diagnostics);
+  const nc::Program& program = given.text();
+  const nc::Interpretation& moves = given.commanded();
   settle(diagnostics, options);
 
   repath::FastestOptions fastest;
   fastest.layout.tolerance_mm = arguments.tolerance_mm;
   fastest.layout.length_mm = arguments.length_mm;
   fastest.contour_mm = arguments.contour_mm;
-  fastest.interpreter = interpreter;
+  fastest.interpreter = arguments.interpreter;
   ProgressLine progress(options, "timing the old blocks");
   const repath::ContourFigures before = repath::contour_figures(moves, moves, machine);
   fastest.progress = [&](double fraction) { progress.show("timing new ones", fraction); };
   const repath::Fastest result = repath::find_fastest(program, moves, machine, before, fastest);
 
   Diagnostics again;
-  const nc::Program new_program =
-      nc::read_program(SourceText(arguments.output, result.path.text), program.language, again);
-  const nc::Interpretation new_moves = nc::interpret(new_program, interpreter, again);
+  reading.language = program.language;
+  const auto made = kinematics::open_program(SourceText(arguments.output, result.path.text), machine, reading, again);
   again.throw_if_errors();
+  const nc::Program& new_program = made.text();
+  const nc::Interpretation& new_moves = made.commanded();
   const auto measured = repath::measure_deviation(moves, new_moves, result.path.runs, arguments.tolerance_mm);
   const bool unchanged = result.path.runs.empty();
   const std::string runs =

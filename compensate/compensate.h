@@ -87,6 +87,7 @@ struct Outlook {
 };
 
 struct CompensationResult {
+  kinematics::MachineProgram given;          ///< the program that was compensated, as it was read
   std::string text;                          ///< the emitted program of the best round
   std::vector<std::uint32_t> block_of_line;  ///< by line of `text`, see nc::Emission; empty: the given program
   std::vector<LineRole> lines;               ///< one per line of the given program

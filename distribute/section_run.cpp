@@ -135,10 +135,8 @@ bool SectionRun::solve(std::size_t section, int round) {
   const auto tell = [&](double share) {
     if (progress_) progress_("cutting", share);
   };
-  const SolveOptions options{
-      .section = section, .sections = key_.sections, .turn_from = turn_from_, .progress = tell};
-  const Solved part =
-      solve_section(job_, *programs_, parts, options, diagnostics_, is_static() ? &target_ : nullptr);
+  const SolveOptions options{.section = section, .sections = key_.sections, .turn_from = turn_from_, .progress = tell};
+  const Solved part = solve_section(job_, *programs_, parts, options, diagnostics_, is_static() ? &target_ : nullptr);
   add(part.section.work, work_);
   if (is_static()) give_part(store_, name(PartStage::solve, round, section, true), part.own);
   give_part(store_, whole, part.section);

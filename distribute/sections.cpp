@@ -429,7 +429,7 @@ Prediction merge_sections(const Job& job, Target& target, const SimulatedProgram
 Prediction merge_sections(const Job& job, const Target& target, removal::SurfaceMap map,
                           const SimulatedProgram& program, const EachSwept& swept, const EachSolved& solved) {
   PathLoads loads;
-  loads.holes.count = removal::count_holes(program.moves, program.holes);
+  loads.holes.count = removal::count_holes(program.moves_in_part(), program.holes);
   loads.cut.loads.reserve(program.path.stamps.size());
   auto machined = std::make_unique<Stock>(target.blank);
   std::vector<removal::SurfacePoint> surface = map.take();

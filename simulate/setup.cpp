@@ -90,7 +90,7 @@ bool check_heights(const machine::Job& job, const SimulatedProgram& program, con
   if (job.stock.allowance_mm > 0 && survey->allowance_mm3 < nothing_mm3(*survey)) report_allowance(job, diagnostics);
   diagnostics.throw_if_errors();
   if (!original && survey->removed_mm3 < nothing_mm3(*survey))
-    report_nothing_removed(program.text.source.name(), places_of(job, program, *stock), diagnostics);
+    report_nothing_removed(program.text().source.name(), places_of(job, program, *stock), diagnostics);
   diagnostics.throw_if_errors();
   set_times(program, survey->collisions);
   report_collisions(job, program, survey->collisions, diagnostics);
@@ -102,7 +102,7 @@ bool check_heights(const machine::Job& job, const SimulatedProgram& program, con
 }
 
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics) {
-  check_machine_collisions(job, setup.program.text, setup.program.text_moves(), diagnostics);
+  check_machine_collisions(job, setup.program.text(), setup.program.moves_in_program(), diagnostics);
   if (setup.cleared) return;
   check_collisions(job, setup.program, setup.target.blank, diagnostics);
   check_region_start(job, setup.program, setup.target.blank, diagnostics);

@@ -10,18 +10,9 @@
 #include "compensate/verify.h"
 #include "feedmodel/fitted_range.h"
 #include "machine/levers.h"
-#include "nc/interpreter.h"
-#include "simulate/rotary_motion.h"
 
 namespace camber::api {
 namespace {
-
-nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
-  Diagnostics ignored;  // said already
-  const auto text = nc::read_program(std::move(source), ignored);
-  return nc::interpret(text, simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text)),
-                       ignored);
-}
 
 /// The job as it was measured; the fit goes to `fit`.
 machine::Job as_measured(const machine::Job& job, const CompensateRequest& request, Diagnostics& diagnostics,
@@ -76,7 +67,7 @@ CompensatedJob compensate_job(const machine::Job& given, const CompensateRequest
     options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };
   out.result = compensate::compensate(job, diagnostics, options);
   out.result.measured = fit;
-  feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
+  feedmodel::check_range(out.result.given.commanded(), job.program, job.machine, diagnostics);
   return out;
 }
 

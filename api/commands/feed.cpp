@@ -9,7 +9,9 @@
 #include "base/units.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
+#include "kinematics/machine_moves.h"
+#include "kinematics/machine_program.h"
 #include "simulate/machine_checks.h"
 
 namespace camber::api {
@@ -17,19 +19,20 @@ namespace camber::api {
 nc::Interpretation moves_of_feed(const nc::Program& text, const machine::Machine& machine,
                                  const nc::InterpreterOptions& options, const std::string& csv,
                                  Diagnostics& diagnostics) {
-  nc::Interpretation moves = nc::interpret(text, rotary_interpreter_options(machine, options), diagnostics);
+  nc::Interpretation moves =
+      kinematics::read_moves(text, machine, {.given = options, .rotary = kinematics::RotaryWords::always}, diagnostics);
   diagnostics.throw_if_errors();
   simulate::check_machine(machine, text, moves, diagnostics);
   simulate::check_spindle(text, moves, diagnostics);
   check_rotary_motion(machine, text, moves, true, diagnostics);
-  place_rotary_moves(machine, moves);
+  if (kinematics::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
   if (!csv.empty()) feedmodel::check_feed_csv_size(moves, machine, csv, diagnostics);
   feedmodel::check_range(moves, text.source.name(), machine, diagnostics);
   return moves;
 }
 
 std::string rotary_columns(const nc::Interpretation& moves, const machine::Machine& machine) {
-  if (!feedmodel::has_rotary_motion(moves, machine)) return {};
+  if (!kinematics::has_rotary_motion(moves, machine)) return {};
   std::string letters = machine.kinematics.rotary_axes();
   std::ranges::sort(letters);
   return letters;
@@ -37,7 +40,7 @@ std::string rotary_columns(const nc::Interpretation& moves, const machine::Machi
 
 feedmodel::FeedSummary predict_feed(const nc::Interpretation& moves, const machine::Machine& machine,
                                     const feedmodel::JointSampleSink& sink) {
-  if (feedmodel::has_rotary_motion(moves, machine)) return feedmodel::predict_joints(moves, machine, sink);
+  if (kinematics::has_rotary_motion(moves, machine)) return feedmodel::predict_joints(moves, machine, sink);
   return feedmodel::predict_feed(moves, machine,
                                  [&](std::span<const feedmodel::TimedSample> samples) { sink(samples, {}); });
 }

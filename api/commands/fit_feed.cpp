@@ -14,8 +14,11 @@
 #include "calib/machine_log.h"
 #include "calib/place_trace.h"
 #include "calib/trace_check.h"
-#include "feedmodel/control_options.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/control_options.h"
+#include "kinematics/joint_map.h"
+#include "kinematics/machine_moves.h"
+#include "kinematics/machine_program.h"
+#include "kinematics/offset_check.h"
 #include "nc/language.h"
 
 namespace camber::api {
@@ -67,12 +70,12 @@ void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, 
 }
 
 nc::Interpretation moves_of(const TracedProgram& traced, const machine::Machine& start, Diagnostics& diagnostics) {
-  const auto options = rotary_interpreter_options(start, traced.interpreter);
+  const kinematics::ReadingOptions options{.given = traced.interpreter, .rotary = kinematics::RotaryWords::always};
   const auto read = [&](const nc::Program& text) {
-    nc::Interpretation moves = nc::interpret(text, options, diagnostics);
-    if (diagnostics.errors() == 0) {
-      check_tip_control(start, text, moves, diagnostics);
-      place_rotary_moves(start, moves);
+    nc::Interpretation moves = kinematics::read_moves(text, start, options, diagnostics);
+    if (diagnostics.errors() == 0 && kinematics::has_rotary_motion(moves, start)) {
+      kinematics::check_offsets(text, moves, kinematics::Asked::joints, diagnostics);
+      kinematics::place_moves(moves, start);
     }
     return moves;
   };
@@ -89,7 +92,7 @@ void add_trace(FeedRuns& runs, const std::string& name, nc::Interpretation moves
   const bool sparse = trace.period_s > kDenseS;
   const std::array<bool, 3> all{true, true, true};
   const bool placeable =
-      (trace.has_actual == all || trace.has_command == all) && !feedmodel::has_rotary_motion(moves, start);
+      (trace.has_actual == all || trace.has_command == all) && !kinematics::has_rotary_motion(moves, start);
   std::optional<calib::PlacedTrace> placed;
   if (placeable && (trace.line.empty() || sparse)) {
     placed = calib::place_on_path(trace, moves);

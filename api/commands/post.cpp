@@ -9,6 +9,7 @@
 #include "base/json.h"
 #include "base/numbers.h"
 #include "base/units.h"
+#include "kinematics/machine_program.h"
 
 namespace camber::api {
 namespace {
@@ -36,23 +37,26 @@ std::string turns_text(const repath::TurnBack& back) {
 PostedProgram post_program(const PostRequest& request, Diagnostics& diagnostics) {
   const machine::Machine& machine = *request.machine;
   require_kinematics(machine);
-  const nc::InterpreterOptions interpreter = rotary_interpreter_options(machine, request.interpreter);
-  nc::Interpretation moves = nc::interpret(*request.text, interpreter, diagnostics);
+  const kinematics::ReadingOptions reading{.given = request.interpreter, .rotary = kinematics::RotaryWords::always};
+  // Its text is the request's.
+  const kinematics::MachineProgram given({}, kinematics::read_moves(*request.text, machine, reading, diagnostics),
+                                         machine);
   diagnostics.throw_if_errors();
-  place_rotary_lines(machine, moves);
+  const nc::Interpretation& moves = given.moves_in_program();
   PostedProgram out;
   out.posted = repath::post(*request.text, moves, machine, request.options, diagnostics);
   diagnostics.throw_if_errors();
-  const NewProgram after = read_new_program(machine, request.output, out.posted.text, request.interpreter);
-  check_new_program(machine, request.job, *request.text, after.moves, out.posted.block_of_line, diagnostics);
+  const kinematics::MachineProgram after =
+      read_new_program(machine, request.output, out.posted.text, request.interpreter);
+  check_new_program(machine, request.job, *request.text, after.commanded(), out.posted.block_of_line, diagnostics);
   diagnostics.throw_if_errors();
-  out.deviation = repath::post_deviation(moves, after.moves, machine, out.posted, kSamples);
+  out.deviation = repath::post_deviation(moves, after.commanded(), machine, out.posted, kSamples);
   const auto with_words = [](const nc::Program& p) {
     return static_cast<std::size_t>(
         std::count_if(p.blocks.begin(), p.blocks.end(), [](const nc::Block& b) { return b.word_count > 0; }));
   };
   out.blocks_before = with_words(*request.text);
-  out.blocks_after = with_words(after.text);
+  out.blocks_after = with_words(after.text());
   return out;
 }
 

@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 /// Times the program once more to write feed.csv, a sample a period; of a trace its own samples.
 std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const simulate::TracedRun* traced,
                                         const machine::Job& job, const std::string& path, Stage& stage) {
-  feedmodel::FeedCsv csv(program.text_moves(), path, rotary_columns(program.text_moves(), job.machine));
+  feedmodel::FeedCsv csv(program.moves_in_program(), path, rotary_columns(program.moves_in_program(), job.machine));
   const auto write = [&](std::span<const feedmodel::TimedSample> samples,
                          std::span<const feedmodel::JointSample> joints) {
     stage.advance(samples.size());
@@ -45,7 +45,7 @@ std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& progra
   };
   std::vector<report::PathRow> rows;
   if (traced) {
-    report::PathCollector collector(program.moves);
+    report::PathCollector collector(program.moves_in_part());
     write(traced->samples, {});
     collector.add(traced->samples);
     rows = collector.take();
@@ -68,7 +68,7 @@ calib::TracedMotion read_motion(const simulate::SimulatedProgram& program, const
     if (d.check != "trace-gap") diagnostics.add(d);
   std::vector<bool> cut = program.selected;
   for (std::size_t i = 0; i < program.holes.size(); ++i) cut[i] = cut[i] || removal::makes_hole(program.holes[i]);
-  return calib::traced_motion(trace, program.text, program.moves, cut, diagnostics);
+  return calib::traced_motion(trace, program.text(), program.moves_in_part(), cut, diagnostics);
 }
 
 /// Gives the program the measured motion; its own goes to the result.
@@ -166,10 +166,9 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& given) {
     checks::check_program(job, given, diagnostics);
-    if (!request.trace.empty())
-      simulate::refuse_rotary_motion(given.rotary.get(), given.text, "traces are of X, Y and Z", diagnostics);
+    if (!request.trace.empty()) kinematics::refuse_rotary_motion(given, "traces are of X, Y and Z", diagnostics);
     if (!request.folder.empty())
-      feedmodel::check_feed_csv_size(given.text_moves(), job.machine, request.folder + "/feed.csv", diagnostics);
+      feedmodel::check_feed_csv_size(given.moves_in_program(), job.machine, request.folder + "/feed.csv", diagnostics);
     diagnostics.throw_if_errors();
     if (!request.trace.empty()) measured = read_motion(given, request, diagnostics);
   };
@@ -181,7 +180,7 @@ PreparedJob prepare(const machine::Job& job, const PredictRequest& request, Diag
   out.setup.original.reset();
   out.setup.target.surface.clear_stamps();  // its points are in the map
   const simulate::SimulatedProgram& program = out.setup.program;
-  feedmodel::check_range(program.text_moves(), job.program, job.machine, diagnostics);
+  feedmodel::check_range(program.moves_in_program(), job.program, job.machine, diagnostics);
   simulate::check_clearance(job, out.setup, diagnostics);
   if (measured) out.traced = exchange_motion(job, out.setup.program, request.trace, *std::move(measured));
   if (request.forces_at > 0)

@@ -103,7 +103,7 @@ TEST(SectionsOfLongPrograms, KeepWhatLiesNearTheSection) {
   distribute::SectionPrograms programs(job, {.longest_path = 20, .check = {}},
                                        {.program = diagnostics, .original = diagnostics, .target = diagnostics});
   ASSERT_TRUE(programs.thin());
-  EXPECT_TRUE(programs.program().text.blocks.empty());
+  EXPECT_TRUE(programs.program().text().blocks.empty());
   const std::size_t all = programs.outline()->stamps;
   for (std::size_t section = 0; section < 9; ++section) {
     programs.go_to(section, 9);
