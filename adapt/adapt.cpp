@@ -57,7 +57,7 @@ void Adapter::observe_given(AdaptResult& out) {
   peaks_before_ = peaks_of(loads_, limits_);
   out.time_before_s = given().feed.time_s;
   out.cutting_time_before_s = given().feed.cutting_time_s;
-  out.blocks_before = given().text.source.line_count();
+  out.blocks_before = given().text().source.line_count();
 }
 
 std::vector<double> Adapter::allowed(double factor) const {

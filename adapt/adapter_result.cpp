@@ -9,7 +9,7 @@
 namespace camber::adapt {
 
 std::size_t Adapter::count_changed() const {
-  const nc::Program& program = given().text;
+  const nc::Program& program = given().text();
   const SourceText text("", best_->emission.text);
   std::vector<bool> same(program.source.line_count(), false), met(same.size(), false);
   const auto& of_line = best_->emission.block_of_line;
@@ -26,8 +26,8 @@ void Adapter::check_emitted() {
   machine::Job job = job_;
   job.operations = best_->operations;
   Diagnostics found;
-  simulate::check_machine(job.machine, best_->program.text, best_->program.moves, found);
-  simulate::check_travel(job, best_->program.text, best_->program.moves, found);
+  simulate::check_machine(job.machine, best_->program.text(), best_->program.moves_in_part(), found);
+  simulate::check_travel(job, best_->program.text(), best_->program.moves_in_part(), found);
   simulate::check_collisions(job, best_->program, blank(), found);
   for (const Diagnostic& d : found.all())
     if (d.severity == Severity::error) diagnostics_.add(d);
@@ -52,7 +52,7 @@ void Adapter::sweep(AdaptResult& out) {
   for (const double factor : kFactors) {
     progress("other limits", (factor - 0.5) / 1.5);
     const auto candidate = choose(factor, kRounds);
-    SweepRow row{factor, candidate->program.feed.time_s, candidate->program.text.source.line_count()};
+    SweepRow row{factor, candidate->program.feed.time_s, candidate->program.text().source.line_count()};
     row.constant_feed_mm_per_s = constant_feed(factor);
     if (row.constant_feed_mm_per_s > 0)
       row.constant_time_s = chooser_->with_constant(row.constant_feed_mm_per_s)->program.feed.time_s;
@@ -71,7 +71,7 @@ void Adapter::finish(AdaptResult& out) {
   out.cutting_time_after_s = best_->program.feed.cutting_time_s;
   out.milling_time_before_s = milling_time_s(given());
   out.milling_time_after_s = milling_time_s(best_->program);
-  out.blocks_after = best_->program.text.source.line_count();
+  out.blocks_after = best_->program.text().source.line_count();
   out.blocks_changed = count_changed();
   out.predictions = predictions_;
   out.constant_feed_mm_per_s = constant_feed(1);
@@ -88,7 +88,7 @@ void Adapter::trace(PathTrace& out) const {
   double along = 0;
   for (const Cell& c : cells_->cells()) {
     out.along_mm.push_back(along += c.length_mm);
-    out.line.push_back(given().moves.moves[c.move].block + 1);
+    out.line.push_back(given().moves_in_part().moves[c.move].block + 1);
     out.feed_before_mm_per_s.push_back(c.feed_mm_per_s);
   }
   out.feed_after_mm_per_s = best_->feed_mm_per_s;

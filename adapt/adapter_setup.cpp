@@ -20,7 +20,7 @@ namespace {
 /// What is known to be refused is refused before the long work.
 void check_given(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
   checks::check_program(job, program, diagnostics);
-  simulate::refuse_rotary_motion(program.rotary.get(), program.text, "adapt chooses feeds of X, Y and Z", diagnostics);
+  kinematics::refuse_rotary_motion(program, "adapt chooses feeds of X, Y and Z", diagnostics);
 }
 
 /// Length of the cells of each move: a fiftieth of the tool's diameter; the whole move where the control stops at the
@@ -29,8 +29,8 @@ std::vector<double> cell_lengths(const machine::Job& job, const simulate::Simula
   constexpr double kOfDiameter = 0.02, kMin_mm = 0.1, kMax_mm = 0.5;
   std::vector<double> out;
   const bool stops = job.machine.control.corner.law == machine::CornerLaw::exact_stop;
-  for (const nc::Move& m : program.moves.moves) {
-    const nc::ModalState& state = program.moves.state_of(m);
+  for (const nc::Move& m : program.moves_in_part().moves) {
+    const nc::ModalState& state = program.moves_in_part().state_of(m);
     const auto tool = job.tools.find(state.tool);
     if (stops || state.path_control == nc::PathControl::exact_stop)
       out.push_back(std::numeric_limits<double>::infinity());
@@ -46,7 +46,7 @@ double thickest_chip_mm(const machine::Job& job, const simulate::SimulatedProgra
   double out = 0;
   for (std::size_t m = 0; m < program.selected.size(); ++m) {
     if (!program.selected[m]) continue;
-    const auto& state = program.moves.state_of(program.moves.moves[m]);
+    const auto& state = program.moves_in_part().state_of(program.moves_in_part().moves[m]);
     const auto tool = job.tools.find(state.tool);
     if (tool == job.tools.end() || state.spindle_speed_rpm <= 0) continue;
     out = std::max(out, job.adapt->highest_feed_mm_per_s * 60 / (state.spindle_speed_rpm * tool->second.flutes));
@@ -67,7 +67,7 @@ Adapter::Adapter(const machine::Job& job, Diagnostics& diagnostics, const AdaptO
   cells_.emplace(given(), cell_lengths(job_, given()));
   check_cells();
   for (const Cell& c : cells_->cells()) {
-    const auto tool = job_.tools.find(given().moves.state_of(given().moves.moves[c.move]).tool);
+    const auto tool = job_.tools.find(given().moves_in_part().state_of(given().moves_in_part().moves[c.move]).tool);
     flutes_.push_back(tool == job_.tools.end() ? 1 : tool->second.flutes);
   }
 }
@@ -90,8 +90,8 @@ void Adapter::set_up() {
 }
 
 Diagnostic Adapter::at_line(Severity severity, std::size_t block, std::string message, std::string check) const {
-  return given().text.source.diagnostic(severity, given().text.blocks[block].offset, std::move(message),
-                                        std::move(check));
+  return given().text().source.diagnostic(severity, given().text().blocks[block].offset, std::move(message),
+                                          std::move(check));
 }
 
 /// Says which feeds are not changed. Errors [nothing-to-adapt] where that is all of them.
@@ -100,7 +100,7 @@ void Adapter::check_cells() {
   std::map<Kept, std::set<std::size_t>> lines;
   for (const Cell& c : cells_->cells()) {
     any = any || c.kept == Kept::no;
-    lines[c.kept].insert(given().moves.moves[c.move].block);
+    lines[c.kept].insert(given().moves_in_part().moves[c.move].block);
   }
   if (const auto& unknown = lines[Kept::unknown_load]; !unknown.empty())
     diagnostics_.add(at_line(Severity::warning, *unknown.begin(),
@@ -116,7 +116,7 @@ void Adapter::check_cells() {
                              "not-emitted"));
   if (any) return;
   diagnostics_.add({Severity::error,
-                    {given().text.source.name(), 0, 0},
+                    {given().text().source.name(), 0, 0},
                     "has no cutting move whose feed can be changed; a line or an arc of the job's operations was "
                     "expected",
                     "nothing-to-adapt",

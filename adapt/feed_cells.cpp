@@ -21,25 +21,25 @@ bool plunges(const nc::Move& m) {
 /// Edits of feed and of a split that the emitter refuses.
 std::vector<nc::EditNotMade> refused(const simulate::SimulatedProgram& program) {
   std::vector<nc::MoveEdit> probes;
-  for (std::uint32_t m = 0; m < program.moves.moves.size(); ++m) {
-    const nc::Move& move = program.moves.moves[m];
+  for (std::uint32_t m = 0; m < program.moves_in_part().moves.size(); ++m) {
+    const nc::Move& move = program.moves_in_part().moves[m];
     if (!cuts(move) || !program.selected[m] || plunges(move)) continue;
     const double feed = kProbe * move.feed_mm_per_s;
     probes.push_back(
         {.move = m,
-         .via = {{.point_mm = nc::point_at(program.moves, move, 0.5), .center_mm = {}, .feed_mm_per_s = {}}},
+         .via = {{.point_mm = nc::point_at(program.moves_in_part(), move, 0.5), .center_mm = {}, .feed_mm_per_s = {}}},
          .end_mm = {},
          .center_mm = {},
          .feed_mm_per_s = feed});
   }
-  return nc::emit_edits(program.text, program.moves, probes, {}).not_made;
+  return nc::emit_edits(program.text(), program.moves_in_part(), probes, {}).not_made;
 }
 
 }  // namespace
 
 FeedCells::FeedCells(const simulate::SimulatedProgram& program, std::span<const double> length_mm)
     : not_editable_(refused(program)) {
-  const auto& moves = program.moves.moves;
+  const auto& moves = program.moves_in_part().moves;
   std::vector<bool> fixed(moves.size(), false);
   for (const nc::EditNotMade& n : not_editable_) fixed[n.move] = true;
   bool breaks = true;
@@ -73,8 +73,8 @@ FeedCells::FeedCells(const simulate::SimulatedProgram& program, std::span<const 
 }
 
 void FeedCells::add(const simulate::SimulatedProgram& program, std::uint32_t m, double length_mm, Kept kept) {
-  const nc::Move& move = program.moves.moves[m];
-  const double length = nc::length_mm(program.moves, move);
+  const nc::Move& move = program.moves_in_part().moves[m];
+  const double length = nc::length_mm(program.moves_in_part(), move);
   if (length <= 0) return;
   const auto count =
       kept == Kept::no ? static_cast<std::size_t>(std::max(1.0, std::ceil(length / length_mm - 1e-9))) : std::size_t{1};

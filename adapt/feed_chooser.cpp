@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "simulate/operations.h"
 
 namespace camber::adapt {
@@ -43,7 +43,7 @@ double milling_time_s(const simulate::SimulatedProgram& program) {
 FeedChooser::FeedChooser(const machine::Job& job, const simulate::SimulatedProgram& given, const FeedCells& cells)
     : job_(job), given_(given), cells_(cells), bounds_(bounds_of(job)) {
   for (const Cell& c : cells.cells()) {
-    const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[c.move]).tool);
+    const auto tool = job.tools.find(given.moves_in_part().state_of(given.moves_in_part().moves[c.move]).tool);
     radius_mm_.push_back(tool == job.tools.end() ? 0 : tool->second.diameter_mm / 2);
   }
   top_speed_ = with_constant(bounds_.highest_mm_per_s)->speed_mm_per_s;
@@ -52,15 +52,16 @@ FeedChooser::FeedChooser(const machine::Job& job, const simulate::SimulatedProgr
 std::shared_ptr<Candidate> FeedChooser::with(std::vector<double> feed) const {
   auto out = std::make_shared<Candidate>();
   out->feed_mm_per_s = std::move(feed);
-  out->emission = nc::emit_edits(given_.text, given_.moves, cells_.edits(given_.moves, out->feed_mm_per_s),
-                                 feedmodel::decimals_for(job_.machine.control, given_.text));
+  out->emission =
+      nc::emit_edits(given_.text(), given_.moves_in_part(), cells_.edits(given_.moves_in_part(), out->feed_mm_per_s),
+                     kinematics::decimals_for(job_.machine.control, given_.text()));
   Diagnostics repeated;  // those of the given program
   machine::Job job = job_;
-  out->operations = simulate::moved_ranges(simulate::as_lines(job_.operations, given_.text, given_.moves),
+  out->operations = simulate::moved_ranges(simulate::as_lines(job_.operations, given_.text(), given_.moves_in_part()),
                                            out->emission.block_of_line);
   job.operations = out->operations;
   out->program = simulate::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
-  out->map = nc::MoveMap(given_.moves, out->program.moves, out->emission.block_of_line);
+  out->map = nc::MoveMap(given_.moves_in_part(), out->program.moves_in_part(), out->emission.block_of_line);
   out->speed_mm_per_s = greatest_speeds(*out);
   return out;
 }

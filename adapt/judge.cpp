@@ -28,8 +28,8 @@ class Judge {
   OverLimit over(std::size_t k, const LoadLimit& limit, double value, OverReason reason) const {
     const auto& stamp = candidate_.program.path.stamps[k];
     const auto place = candidate_.map.given(stamp.move, stamp.fraction);
-    return {given_.moves.moves[place.move].block + 1,
-            candidate_.program.moves.moves[stamp.move].block + std::size_t{1},
+    return {given_.moves_in_part().moves[place.move].block + 1,
+            candidate_.program.moves_in_part().moves[stamp.move].block + std::size_t{1},
             limit,
             value,
             loads_.points[k].load.feed_mm_per_s,
@@ -55,7 +55,8 @@ class Judge {
     }
     for (std::size_t k = 0; k < loads_.points.size(); ++k) {
       const LoadPoint& p = loads_.points[k].load;
-      const std::size_t line = candidate_.program.moves.moves[candidate_.program.path.stamps[k].move].block + 1;
+      const std::size_t line =
+          candidate_.program.moves_in_part().moves[candidate_.program.path.stamps[k].move].block + 1;
       const double value = p.at(limit.load, p.feed_mm_per_s);
       if (!blocks.contains(line)) figure.max_elsewhere = std::max(figure.max_elsewhere, value);
     }

@@ -60,7 +60,8 @@ ObservedLoads observe_with(const ObservedRun& run, const FeedCells& cells, EdgeS
     PlacedLoad p{cells.find(place.move, place.fraction), {}};
     p.load.feed_mm_per_s = std::max(speed[k], kMinSpeed_mm_per_s);
     p.load.exponent = static_cast<float>(exponent_at(run.job.material, run.loads[k].chip_max_mm));
-    const double rpm = run.program.moves.state_of(run.program.moves.moves[stamps[k].move]).spindle_speed_rpm;
+    const double rpm =
+        run.program.moves_in_part().state_of(run.program.moves_in_part().moves[stamps[k].move]).spindle_speed_rpm;
     const auto values = values_of(run.loads[k], rpm);
     for (std::size_t l = 0; l < kLoads; ++l) {
       const double share = l == index_of(Load::chip) ? 0 : edge_share(k, p, l, values[l]);
@@ -86,7 +87,7 @@ std::vector<double> speeds_of(const machine::Job& job, const simulate::Simulated
   for (const removal::ToolRun& run : program.path.runs) {
     const int flutes = job.tools.at(run.tool).flutes;
     for (std::size_t k = run.from; k < run.from + run.count; ++k) {
-      const auto& state = program.moves.state_of(program.moves.moves[stamps[k].move]);
+      const auto& state = program.moves_in_part().state_of(program.moves_in_part().moves[stamps[k].move]);
       out[k] = stamps[k].feed_per_tooth_mm.norm() * flutes * state.spindle_speed_rpm / 60;
     }
     for (std::size_t k = run.from + run.count; k-- > run.from;)

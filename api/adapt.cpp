@@ -6,8 +6,8 @@
 #include "api/job.h"
 #include "api/run.h"
 #include "base/units.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/fitted_range.h"
+#include "kinematics/machine_program.h"
 #include "machine/assumptions.h"
 #include "nc/interpreter.h"
 #include "report/adapt_summary.h"
@@ -46,9 +46,10 @@ AdaptResult result_of(const adapt::AdaptResult& r) {
 /// Whether the feed model was fitted at such moves.
 void check_range_of(const machine::Job& job, const std::string& text, Diagnostics& diagnostics) {
   Diagnostics ignored;  // those of the given program were reported already
-  const auto program = nc::read_program(SourceText(job.program, text), ignored);
-  const auto moves = nc::interpret(program, feedmodel::interpreter_options(job.machine, job.inch), ignored);
-  feedmodel::check_range(moves, job.program, job.machine, diagnostics);
+  const auto program =
+      kinematics::open_program(SourceText(job.program, text), job.machine,
+                               {.given = {.inch = job.inch}, .rotary = kinematics::RotaryWords::never}, ignored);
+  feedmodel::check_range(program.commanded(), job.program, job.machine, diagnostics);
 }
 
 }  // namespace

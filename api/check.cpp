@@ -13,11 +13,13 @@
 #include "base/output_file.h"
 #include "base/temporary_folder.h"
 #include "checks/plausibility.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
 #include "feedmodel/fitted_range.h"
+#include "kinematics/control_options.h"
+#include "kinematics/joint_map.h"
+#include "kinematics/machine_program.h"
+#include "kinematics/offset_check.h"
 #include "kinematics/reference_check.h"
-#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
 #include "machine/assumptions.h"
 #include "machine/machine_presets.h"
@@ -28,7 +30,6 @@
 #include "report/setup_sheet.h"
 #include "simulate/machine_checks.h"
 #include "simulate/machine_collisions.h"
-#include "simulate/rotary_motion.h"
 #include "simulate/setup_checks.h"
 #include "simulate/thin_walls.h"
 
@@ -54,11 +55,11 @@ nc::InterpreterOptions options_as_read(nc::InterpreterOptions options, const mac
   options.rotary_axes = kinematics::rotary_options(*machine);
   if (job && !options.rotary_axes.empty() &&
       machine::is_preset(machine->path)) {  // as the commands that cut read it; what is given counts before
-    const nc::InterpreterOptions assumed = simulate::interpreter_options(*job, true);
+    const kinematics::ReadingOptions assumed = kinematics::reading_of(*job);
     options.work_offsets_mm.insert(assumed.work_offsets_mm.begin(), assumed.work_offsets_mm.end());
     options.tool_offsets.insert(assumed.tool_offsets.begin(), assumed.tool_offsets.end());
   }
-  return feedmodel::interpreter_options(*machine, options);
+  return kinematics::interpreter_options(*machine, options);
 }
 
 /// A program that calls no tool and names no spindle speed runs in air.
@@ -86,8 +87,8 @@ double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
                                 [&](const removal::HeightMap& machined) {
                                   simulate::suggest_workpiece(job, program, machined, diagnostics);
                                 })) {
-      feedmodel::check_range(program.text_moves(), job.program, job.machine, diagnostics);
-      simulate::check_machine_collisions(job, program.text, program.text_moves(), diagnostics);
+      feedmodel::check_range(program.moves_in_program(), job.program, job.machine, diagnostics);
+      simulate::check_machine_collisions(job, program.text(), program.moves_in_program(), diagnostics);
       return bytes;
     }
   }
@@ -144,7 +145,8 @@ Checked check_program(const CheckAsked& asked, Diagnostics& found,
   read(checked.moves);
   if (machine) simulate::check_machine(*machine, text, checked.moves, found);
   if (machine && machine->kinematics.given()) {
-    api::check_tip_lengths(*machine, text, checked.moves, found);
+    if (kinematics::has_rotary_motion(checked.moves, *machine))
+      kinematics::check_offsets(text, checked.moves, kinematics::Asked::tip_control, found);
     kinematics::check_travel(*machine, text, checked.moves, found);
     kinematics::check_reference_points(*machine, text, checked.moves, found);
   }

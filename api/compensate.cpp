@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "api/compensation.h"
 #include "api/job.h"
 #include "api/prediction.h"
 #include "base/output_file.h"
@@ -19,12 +20,10 @@
 #include "feedmodel/fitted_range.h"
 #include "machine/assumptions.h"
 #include "machine/levers.h"
-#include "nc/interpreter.h"
 #include "report/feature_results.h"
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
-#include "simulate/rotary_motion.h"
 
 namespace camber {
 namespace {
@@ -32,19 +31,14 @@ namespace {
 namespace fs = std::filesystem;
 using compensate::CompensationResult;
 
-nc::Interpretation moves_of(SourceText source, const machine::Job& job) {
-  Diagnostics ignored;  // said already
-  const auto text = nc::read_program(std::move(source), ignored);
-  return nc::interpret(text, simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text)),
-                       ignored);
-}
-
 /// The job as it was measured; the fit goes to `fit`.
 machine::Job as_measured(const machine::Job& job, const CompensateOptions& request, Diagnostics& diagnostics,
-                         const simulate::Progress& progress, std::optional<compensate::MeasuredFit>& fit) {
+                         const simulate::Progress& progress, const simulate::Predictor& predictor,
+                         std::optional<compensate::MeasuredFit>& fit) {
   if (request.measured.empty()) return job;
   const auto points = compensate::read_measured(request.measured);
-  fit = compensate::fit_measured(job, request.measured, points, request.measured_program, diagnostics, progress);
+  fit = compensate::fit_measured(job, request.measured, points, request.measured_program, diagnostics, progress,
+                                 predictor);
   return compensate::softened(job, fit->scale);
 }
 
@@ -65,8 +59,10 @@ machine::Job with_levers(const machine::Job& job, const std::vector<std::string>
   return out;
 }
 
-compensate::CompensateOptions loop_options(const CompensateOptions& request, simulate::Progress progress) {
+compensate::CompensateOptions loop_options(const CompensateOptions& request, simulate::Progress progress,
+                                           const simulate::Predictor& predictor) {
   compensate::CompensateOptions options;
+  options.predictor = predictor;
   options.progress = std::move(progress);
   if (request.outlook)
     options.outlook = [&](const compensate::Outlook& outlook) { request.outlook(report::outlook_sentence(outlook)); };
@@ -86,17 +82,19 @@ struct CompensatedJob {
 
 /// Throws InputError and BeyondModel. Writes nothing.
 CompensatedJob compensate_job(const machine::Job& given, const CompensateOptions& request,
-                              const simulate::Progress& progress, Diagnostics& diagnostics) {
-  compensate::CompensateOptions options = loop_options(request, progress);
+                              const simulate::Progress& progress, const simulate::Predictor& predictor,
+                              Diagnostics& diagnostics) {
+  compensate::CompensateOptions options = loop_options(request, progress, predictor);
   std::optional<compensate::MeasuredFit> fit;
-  CompensatedJob out{
-      as_measured(with_levers(given, request.levers, diagnostics), request, diagnostics, options.progress, fit), {}};
+  CompensatedJob out{as_measured(with_levers(given, request.levers, diagnostics), request, diagnostics,
+                                 options.progress, predictor, fit),
+                     {}};
   const machine::Job& job = out.job;
   if (request.header || request.header_hash)
     options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };
   out.result = compensate::compensate(job, diagnostics, options);
   out.result.measured = fit;
-  feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
+  feedmodel::check_range(out.result.given.commanded(), job.program, job.machine, diagnostics);
   return out;
 }
 
@@ -170,7 +168,7 @@ std::string page_of(const machine::Job& job, const CompensationResult& result, c
     emitted_job.operations = compensate::moved_ranges(result.operations, result.block_of_line);
   const auto after = simulate::simulate_motion(SourceText(job.program, result.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
-  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves;
+  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves_in_part();
   return report::html_report(report::compensate_report(job, result, {before, rows(before), result.loads_before},
                                                        {after, rows(after), result.loads_after}, output, diagnostics,
                                                        from ? &*from : nullptr));
@@ -206,7 +204,8 @@ Diagnostic unknown_parameter(const std::string& name, const std::string& job_pat
 
 }  // namespace
 
-CompensateResult v0::compensate(const Job& given, const CompensateOptions& options, const RunOptions& run_options) {
+CompensateResult api::compensate(const Job& given, const CompensateOptions& options, const RunOptions& run_options,
+                                 const simulate::Predictor& predictor) {
   CompensateResult result;
   api::Run run(run_options);
   run.execute([&] {
@@ -223,7 +222,7 @@ CompensateResult v0::compensate(const Job& given, const CompensateOptions& optio
     };
     CompensatedJob done;
     try {
-      done = compensate_job(api::programmed(given), options, progress, found);
+      done = compensate_job(api::programmed(given), options, progress, predictor, found);
     } catch (const BeyondModel&) {
       run.settle_first(found);
       throw;
@@ -257,6 +256,10 @@ CompensateResult v0::compensate(const Job& given, const CompensateOptions& optio
     result.unwritten = failed.all();
   });
   return result;
+}
+
+CompensateResult v0::compensate(const Job& given, const CompensateOptions& options, const RunOptions& run_options) {
+  return api::compensate(given, options, run_options, simulate::predict);
 }
 
 }  // namespace camber

@@ -5,8 +5,8 @@
 #include "api/program.h"
 #include "api/run.h"
 #include "base/units.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
+#include "kinematics/control_options.h"
 #include "nc/language.h"
 #include "repath/compress.h"
 #include "report/rewrite_summary.h"
@@ -38,7 +38,7 @@ CompressResult compressed(const Program& given, const machine::Machine* machine,
   const std::string name = options.output.empty() ? given.path() : options.output;
   found.append(given.impl().found);
   const nc::InterpreterOptions read =
-      machine ? feedmodel::interpreter_options(*machine, given.impl().options) : given.impl().options;
+      machine ? kinematics::interpreter_options(*machine, given.impl().options) : given.impl().options;
   const nc::Interpretation moves = nc::interpret(program, read, found);
   run.settle_first(found);
   const repath::CompressOptions rules = compress_rules(options, run);

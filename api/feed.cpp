@@ -11,7 +11,9 @@
 #include "base/units.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
+#include "kinematics/machine_moves.h"
+#include "kinematics/machine_program.h"
 #include "machine/assumptions.h"
 #include "report/feed_summary.h"
 #include "report/timed_track.h"
@@ -23,7 +25,7 @@ namespace {
 /// feedmodel::predict_feed, or predict_joints for a program with rotary motion; otherwise the sink gets no joints.
 feedmodel::FeedSummary feed_or_joints(const nc::Interpretation& moves, const machine::Machine& machine,
                                       const feedmodel::JointSampleSink& sink) {
-  if (feedmodel::has_rotary_motion(moves, machine)) return feedmodel::predict_joints(moves, machine, sink);
+  if (kinematics::has_rotary_motion(moves, machine)) return feedmodel::predict_joints(moves, machine, sink);
   return feedmodel::predict_feed(moves, machine,
                                  [&](std::span<const feedmodel::TimedSample> samples) { sink(samples, {}); });
 }
@@ -44,19 +46,20 @@ void add_poses(std::span<const feedmodel::JointSample> joints, FeedResult& resul
 nc::Interpretation api::moves_of_feed(const nc::Program& text, const machine::Machine& machine,
                                       const nc::InterpreterOptions& options, const std::string& csv,
                                       Diagnostics& diagnostics) {
-  nc::Interpretation moves = nc::interpret(text, rotary_interpreter_options(machine, options), diagnostics);
+  nc::Interpretation moves =
+      kinematics::read_moves(text, machine, {.given = options, .rotary = kinematics::RotaryWords::always}, diagnostics);
   diagnostics.throw_if_errors();
   simulate::check_machine(machine, text, moves, diagnostics);
   simulate::check_spindle(text, moves, diagnostics);
   check_rotary_motion(machine, text, moves, true, diagnostics);
-  place_rotary_moves(machine, moves);
+  if (kinematics::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
   if (!csv.empty()) feedmodel::check_feed_csv_size(moves, machine, csv, diagnostics);
   feedmodel::check_range(moves, text.source.name(), machine, diagnostics);
   return moves;
 }
 
 std::string api::rotary_columns(const nc::Interpretation& moves, const machine::Machine& machine) {
-  if (!feedmodel::has_rotary_motion(moves, machine)) return {};
+  if (!kinematics::has_rotary_motion(moves, machine)) return {};
   std::string letters = machine.kinematics.rotary_axes();
   std::ranges::sort(letters);
   return letters;
@@ -84,7 +87,7 @@ FeedResult v0::feed(const Program& program, const Machine& machine, const FeedOp
     found.append(program.impl().found);
     const nc::Interpretation moves =
         api::moves_of_feed(program.impl().text, on, program.impl().options, options.csv, found);
-    if (options.page && !feedmodel::has_rotary_motion(moves, on))
+    if (options.page && !kinematics::has_rotary_motion(moves, on))
       fail_on_file(program.path(),
                    "turns no rotary axis of the machine, and the page of feed shows those; camber check --report shows "
                    "programs of three axes",

@@ -15,7 +15,10 @@
 #include "calib/machine_log.h"
 #include "calib/place_trace.h"
 #include "calib/trace_check.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
+#include "kinematics/machine_moves.h"
+#include "kinematics/machine_program.h"
+#include "kinematics/offset_check.h"
 #include "report/block_time_plot.h"
 #include "report/fit_feed_page.h"
 #include "report/fit_feed_summary.h"
@@ -79,11 +82,11 @@ void add_times(calib::StretchRun& run, const std::string& path, TraceKind kind, 
 nc::Interpretation moves_of(const Program& program, const machine::Machine& start, Diagnostics& diagnostics) {
   const nc::Program& text = program.impl().text;
   diagnostics.append(program.impl().found);
-  nc::Interpretation moves =
-      nc::interpret(text, api::rotary_interpreter_options(start, program.impl().options), diagnostics);
-  if (diagnostics.errors() == 0) {
-    api::check_tip_control(start, text, moves, diagnostics);
-    api::place_rotary_moves(start, moves);
+  nc::Interpretation moves = kinematics::read_moves(
+      text, start, {.given = program.impl().options, .rotary = kinematics::RotaryWords::always}, diagnostics);
+  if (diagnostics.errors() == 0 && kinematics::has_rotary_motion(moves, start)) {
+    kinematics::check_offsets(text, moves, kinematics::Asked::joints, diagnostics);
+    kinematics::place_moves(moves, start);
   }
   return moves;
 }
@@ -96,7 +99,7 @@ void add_trace(FeedRuns& runs, const std::string& name, nc::Interpretation moves
   const bool sparse = trace.period_s > kDenseS;
   const std::array<bool, 3> all{true, true, true};
   const bool placeable =
-      (trace.has_actual == all || trace.has_command == all) && !feedmodel::has_rotary_motion(moves, start);
+      (trace.has_actual == all || trace.has_command == all) && !kinematics::has_rotary_motion(moves, start);
   std::optional<calib::PlacedTrace> placed;
   if (placeable && (trace.line.empty() || sparse)) {
     placed = calib::place_on_path(trace, moves);

@@ -1,19 +1,21 @@
 #include "api/new_program.h"
 
-#include "api/rotary_program.h"
+#include <utility>
+
+#include "kinematics/machine_program.h"
 #include "kinematics/travel_check.h"
 #include "simulate/machine_collisions.h"
 
 namespace camber::api {
 
-NewProgram read_new_program(const machine::Machine& machine, const std::string& name, const std::string& text,
-                            const nc::InterpreterOptions& interpreter) {
+kinematics::MachineProgram read_new_program(const machine::Machine& machine, const std::string& name,
+                                            const std::string& text, const nc::InterpreterOptions& interpreter) {
   Diagnostics again;
-  NewProgram out;
-  out.text = nc::read_program(SourceText(name, text), again);
-  out.moves = nc::interpret(out.text, rotary_interpreter_options(machine, interpreter), again);
+  nc::Program program = nc::read_program(SourceText(name, text), again);
+  nc::Interpretation moves = kinematics::read_moves(
+      program, machine, {.given = interpreter, .rotary = kinematics::RotaryWords::always}, again);
   again.throw_if_errors();
-  return out;
+  return {std::move(program), std::move(moves), machine};
 }
 
 void check_new_program(const machine::Machine& machine, const machine::Job* job, const nc::Program& given,

@@ -5,20 +5,16 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "kinematics/machine_program.h"
 #include "machine/job.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 
 namespace camber::api {
 
-struct NewProgram {
-  nc::Program text;
-  nc::Interpretation moves;
-};
-
 /// `name`: in messages. Throws InputError: an error in the text is ours. Warnings were said of the given text.
-NewProgram read_new_program(const machine::Machine& machine, const std::string& name, const std::string& text,
-                            const nc::InterpreterOptions& interpreter);
+kinematics::MachineProgram read_new_program(const machine::Machine& machine, const std::string& name,
+                                            const std::string& text, const nc::InterpreterOptions& interpreter);
 
 /// Runs kinematics::check_travel on the new moves and, for a job whose machine has bodies and where that finds
 /// nothing, simulate::check_machine_collisions. Messages name blocks of the given program.

@@ -13,7 +13,7 @@
 #include "api/run.h"
 #include "base/output_file.h"
 #include "base/temporary_folder.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "machine/machine_presets.h"
 #include "nc/dialect.h"
 #include "plan/plan_table.h"
@@ -29,7 +29,7 @@ struct Planned {
 };
 
 std::string extension_of(const plan::PlanInput& input) {
-  const nc::Dialect& dialect = feedmodel::dialect_of(input.machine.control.kind);
+  const nc::Dialect& dialect = kinematics::dialect_of(input.machine.control.kind);
   return dialect.language == nc::LanguageId::iso ? ".nc" : std::string(dialect.file_extension);
 }
 

@@ -7,6 +7,7 @@
 #include "api/program.h"
 #include "api/rotary_program.h"
 #include "api/run.h"
+#include "kinematics/machine_program.h"
 #include "nc/language.h"
 #include "report/post_summary.h"
 
@@ -43,19 +44,22 @@ report::PostSummary post_program(const Program& given, const machine::Machine& m
   nc::require_iso(text, "post");
   require_kinematics(machine);
   const nc::InterpreterOptions& read = given.impl().options;
-  nc::Interpretation moves = nc::interpret(text, api::rotary_interpreter_options(machine, read), diagnostics);
+  const kinematics::MachineProgram before(
+      {},  // its text is the given one's
+      kinematics::read_moves(text, machine, {.given = read, .rotary = kinematics::RotaryWords::always}, diagnostics),
+      machine);
   diagnostics.throw_if_errors();
-  api::place_rotary_lines(machine, moves);
+  const nc::Interpretation& moves = before.moves_in_program();
   report::PostSummary out{.asked = rules_of(options), .posted = {}, .deviation = {}};
   out.posted = repath::post(text, moves, machine, out.asked, diagnostics);
   diagnostics.throw_if_errors();
-  const api::NewProgram after =
+  const kinematics::MachineProgram after =
       api::read_new_program(machine, options.output.empty() ? given.path() : options.output, out.posted.text, read);
-  api::check_new_program(machine, job, text, after.moves, out.posted.block_of_line, diagnostics);
+  api::check_new_program(machine, job, text, after.commanded(), out.posted.block_of_line, diagnostics);
   diagnostics.throw_if_errors();
-  out.deviation = repath::post_deviation(moves, after.moves, machine, out.posted, kPostSamples);
+  out.deviation = repath::post_deviation(moves, after.commanded(), machine, out.posted, kPostSamples);
   out.blocks_before = blocks_with_words(text);
-  out.blocks_after = blocks_with_words(after.text);
+  out.blocks_after = blocks_with_words(after.text());
   return out;
 }
 

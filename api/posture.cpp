@@ -17,9 +17,9 @@
 #include "api/run.h"
 #include "base/units.h"
 #include "checks/plausibility.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
-#include "kinematics/rotary_options.h"
+#include "kinematics/control_options.h"
+#include "kinematics/machine_program.h"
 #include "nc/language.h"
 #include "repath/post.h"
 #include "report/posture_summary.h"
@@ -53,7 +53,7 @@ nc::OneDirection written_as(const PostureCommand& command) {
   const machine::Machine& machine = command.job->machine;
   if (!command.options.indexed) return nc::OneDirection::tip;
   if (command.written) return *command.written;
-  const nc::OneDirection usual = nc::five_axis_words(feedmodel::dialect_of(machine.control.kind)).one_direction;
+  const nc::OneDirection usual = nc::five_axis_words(kinematics::dialect_of(machine.control.kind)).one_direction;
   const auto axes = kinematics::rotary_options(machine);
   const bool table = std::ranges::all_of(axes, &nc::RotaryOption::on_table);
   return usual == nc::OneDirection::dynamic && !table ? nc::OneDirection::joints : usual;
@@ -62,10 +62,10 @@ nc::OneDirection written_as(const PostureCommand& command) {
 /// The tip's program in joint coordinates; lines still map to the blocks of the given program.
 void to_joints(const PostureCommand& command, report::PosturedProgram& program, Diagnostics& diagnostics) {
   const machine::Machine& machine = command.job->machine;
-  const api::NewProgram tip =
+  const kinematics::MachineProgram tip =
       api::read_new_program(machine, command.output, program.postured.text, command.interpreter);
   repath::Posted posted =
-      repath::post(tip.text, tip.moves, machine, {.target = repath::PostTarget::joints}, diagnostics);
+      repath::post(tip.text(), tip.commanded(), machine, {.target = repath::PostTarget::joints}, diagnostics);
   diagnostics.throw_if_errors();
   for (std::uint32_t& block : posted.block_of_line) block = program.postured.block_of_line[block];
   program.postured.text = std::move(posted.text);
@@ -74,11 +74,8 @@ void to_joints(const PostureCommand& command, report::PosturedProgram& program, 
 
 /// The moves of the new program.
 nc::Interpretation new_moves(const report::PosturedProgram& program, const PostureCommand& command) {
-  const machine::Machine& machine = command.job->machine;
-  nc::Interpretation moves =
-      api::read_new_program(machine, command.output, program.postured.text, command.interpreter).moves;
-  api::place_rotary_lines(machine, moves);
-  return moves;
+  return api::read_new_program(command.job->machine, command.output, program.postured.text, command.interpreter)
+      .moves_in_program();
 }
 
 /// Time on the machine, and what the checks of travel and of collisions with its bodies say.
@@ -103,9 +100,9 @@ std::vector<double> overhangs_of(const machine::Job& job, int number, double ste
 /// Throws InputError: what make_postures() says, and the checks of travel and of collisions with the machine's bodies
 /// of the chosen program, at the given blocks.
 report::PosturedOverhangs posture_programs(const PostureCommand& command, Diagnostics& diagnostics) {
-  nc::InterpreterOptions options = api::rotary_interpreter_options(command.job->machine, command.interpreter);
-  if (!options.inch) options.inch = command.job->inch;
-  const nc::Interpretation moves = nc::interpret(*command.text, options, diagnostics);
+  kinematics::ReadingOptions options{.given = command.interpreter, .rotary = kinematics::RotaryWords::always};
+  if (!options.given.inch) options.given.inch = command.job->inch;
+  const nc::Interpretation moves = kinematics::read_moves(*command.text, command.job->machine, options, diagnostics);
   diagnostics.throw_if_errors();
   checks::check_job_values(*command.job, diagnostics);
   diagnostics.throw_if_errors();

@@ -6,7 +6,6 @@
 #include "base/output_file.h"
 #include "report/mesh_file.h"
 #include "report/report_data.h"
-#include "simulate/moves_of_axes.h"
 
 namespace camber {
 namespace {
@@ -30,13 +29,11 @@ void add_meshes(const machine::Job& job, const api::PreparedJob& prepared, const
 
 void add_feed_points(const machine::Job& job, const api::PreparedJob& prepared, PredictResult& result) {
   const simulate::SimulatedProgram& program = prepared.setup.program;
-  const feedmodel::SampleSink sink = api::points_sink(program.moves, result.feed);
+  const feedmodel::SampleSink sink = api::points_sink(program.moves_in_part(), result.feed);
   if (prepared.traced)
     sink(prepared.traced->samples);
-  else if (program.rotary)
-    feedmodel::predict_feed(simulate::moves_of_axes(*program.rotary, job.machine), job.machine, sink);
   else
-    feedmodel::predict_feed(program.moves, job.machine, sink);
+    feedmodel::predict_feed(program.turns() ? program.moves_of_axes() : program.moves_in_part(), job.machine, sink);
 }
 
 }  // namespace

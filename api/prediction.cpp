@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 /// Times the program once more to write feed.csv, a sample a period; of a trace its own samples.
 std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& program, const simulate::TracedRun* traced,
                                         const machine::Job& job, const std::string& path, Stage& stage) {
-  feedmodel::FeedCsv csv(program.text_moves(), path, rotary_columns(program.text_moves(), job.machine));
+  feedmodel::FeedCsv csv(program.moves_in_program(), path, rotary_columns(program.moves_in_program(), job.machine));
   const auto write = [&](std::span<const feedmodel::TimedSample> samples,
                          std::span<const feedmodel::JointSample> joints) {
     stage.advance(samples.size());
@@ -46,7 +46,7 @@ std::vector<report::PathRow> write_feed(const simulate::SimulatedProgram& progra
   };
   std::vector<report::PathRow> rows;
   if (traced) {
-    report::PathCollector collector(program.moves);
+    report::PathCollector collector(program.moves_in_part());
     write(traced->samples, {});
     collector.add(traced->samples);
     rows = collector.take();
@@ -69,7 +69,7 @@ calib::TracedMotion read_motion(const simulate::SimulatedProgram& program, const
     if (d.check != "trace-gap") diagnostics.add(d);
   std::vector<bool> cut = program.selected;
   for (std::size_t i = 0; i < program.holes.size(); ++i) cut[i] = cut[i] || removal::makes_hole(program.holes[i]);
-  return calib::traced_motion(trace, program.text, program.moves, cut, diagnostics);
+  return calib::traced_motion(trace, program.text(), program.moves_in_part(), cut, diagnostics);
 }
 
 /// Gives the program the measured motion; its own goes to the result.
@@ -164,10 +164,9 @@ PreparedJob prepare(const machine::Job& job, const PredictOptions& options, cons
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& program) {
     checks::check_program(job, program, diagnostics);
-    if (!options.trace.empty())
-      simulate::refuse_rotary_motion(program.rotary.get(), program.text, "traces are of X, Y and Z", diagnostics);
+    if (!options.trace.empty()) kinematics::refuse_rotary_motion(program, "traces are of X, Y and Z", diagnostics);
     if (!options.output_folder.empty())
-      feedmodel::check_feed_csv_size(program.text_moves(), job.machine, options.output_folder + "/feed.csv",
+      feedmodel::check_feed_csv_size(program.moves_in_program(), job.machine, options.output_folder + "/feed.csv",
                                      diagnostics);
     diagnostics.throw_if_errors();
     if (!options.trace.empty()) measured = read_motion(program, options, diagnostics);
@@ -180,7 +179,7 @@ PreparedJob prepare(const machine::Job& job, const PredictOptions& options, cons
   out.setup.original.reset();
   out.setup.target.surface.clear_stamps();  // its points are in the map
   const simulate::SimulatedProgram& program = out.setup.program;
-  feedmodel::check_range(program.text_moves(), job.program, job.machine, diagnostics);
+  feedmodel::check_range(program.moves_in_program(), job.program, job.machine, diagnostics);
   simulate::check_clearance(job, out.setup, diagnostics);
   if (measured) out.traced = exchange_motion(job, out.setup.program, options.trace, *std::move(measured));
   if (options.forces_at > 0)

@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "machine/control_kind.h"
 #include "nc/language.h"
 #include "nc/offsets.h"
@@ -20,7 +20,7 @@ nc::Dialect dialect_of_control(const std::string& name, const std::string& path)
   const auto at = std::ranges::find(names, name);
   if (at == names.end())
     fail_on_file(path, fmt::format("dialect {}: one of {} was expected", name, fmt::join(names, ", ")), "dialect");
-  return feedmodel::dialect_of(machine::control_kinds()[static_cast<std::size_t>(at - names.begin())]);
+  return kinematics::dialect_of(machine::control_kinds()[static_cast<std::size_t>(at - names.begin())]);
 }
 
 }  // namespace

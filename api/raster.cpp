@@ -9,7 +9,7 @@
 #include "base/mesh_file.h"
 #include "camber/resegment.h"
 #include "checks/plausibility.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "repath/fastest.h"
 #include "repath/raster.h"
 #include "repath/raster_text.h"
@@ -87,7 +87,7 @@ std::optional<double> top_of_stock_mm(const machine::StockDescription& stock) {
 /// Where feed begins: in a stock that is left all over alike a little above it, else above the blank.
 repath::RasterProgram raster_program(const RasterOptions& asked, const machine::Job& job, const machine::Tool& tool,
                                      double part_top_mm, int decimals) {
-  repath::RasterProgram out{.dialect = feedmodel::dialect_of(job.machine.control.kind),
+  repath::RasterProgram out{.dialect = kinematics::dialect_of(job.machine.control.kind),
                             .tool = tool,
                             .spindle_rpm = asked.spindle_rpm,
                             .feed_mm_per_min = asked.feed_mm_per_min,
@@ -161,7 +161,7 @@ RasterResult make_raster(const Job& given, const RasterOptions& asked, api::Run&
     chains.push_back(repath::points_of(drop, chain, rules));
     compared.push_back(repath::points_of(drop, chain, rules, kComparedStepMm));
   }
-  const nc::InterpreterOptions read = feedmodel::interpreter_options(job.machine, std::nullopt);
+  const nc::InterpreterOptions read = kinematics::interpreter_options(job.machine, std::nullopt);
   const std::string& name = layout.output;
   const ReadRaster whole = read_raster(name, repath::raster_text(program, chains), read);
   const ReadRaster constant = read_raster(name, repath::raster_text(program, compared), read);

@@ -5,7 +5,7 @@
 #include "api/job.h"
 #include "api/program.h"
 #include "api/run.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "nc/language.h"
 #include "repath/fastest.h"
 #include "report/rewrite_summary.h"
@@ -30,7 +30,7 @@ ResegmentResult resegmented(const Program& given, const Machine& on, const Reseg
   const std::string name = options.output.empty() ? given.path() : options.output;
   Diagnostics found = on.impl().found;
   found.append(given.impl().found);
-  const nc::InterpreterOptions read = feedmodel::interpreter_options(machine, given.impl().options);
+  const nc::InterpreterOptions read = kinematics::interpreter_options(machine, given.impl().options);
   const nc::Interpretation moves = nc::interpret(program, read, found);
   run.settle_first(found);
 

@@ -10,14 +10,14 @@
 #include "base/diagnostics.h"
 #include "base/output_file.h"
 #include "compensate/header.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
+#include "kinematics/machine_program.h"
 #include "machine/job.h"
 #include "machine/study.h"
 #include "machine/toml_text.h"
 #include "nc/emit.h"
 #include "nc/interpreter.h"
 #include "report/study_table.h"
-#include "simulate/rotary_motion.h"
 
 namespace camber {
 namespace {
@@ -94,10 +94,11 @@ void warn_of_timed_turns(const machine::Job& job, const nc::Interpretation& move
 /// The program with all feeds of its cutting moves scaled. Warns of moves whose feed the text does not say alone.
 std::string scaled_program(const machine::Job& job, double percent, Diagnostics& diagnostics) {
   Diagnostics ignored;  // said when the case itself is read
-  const nc::Program text = nc::read_program(SourceText::read(job.program), ignored);
-  const auto options = simulate::interpreter_options(job, simulate::names_rotary_axes(job.machine, text));
-  const nc::Interpretation moves = nc::interpret(text, options, ignored);
+  const auto program =
+      kinematics::open_program(SourceText::read(job.program), job.machine, kinematics::reading_of(job), ignored);
   ignored.throw_if_errors();
+  const nc::Program& text = program.text();
+  const nc::Interpretation& moves = program.commanded();
   std::vector<nc::MoveEdit> edits;
   for (std::uint32_t i = 0; i < moves.moves.size(); ++i) {
     const nc::Move& m = moves.moves[i];
@@ -105,7 +106,7 @@ std::string scaled_program(const machine::Job& job, double percent, Diagnostics&
       edits.push_back({.move = i, .feed_mm_per_s = m.feed_mm_per_s * percent / 100});
   }
   warn_of_timed_turns(job, moves, percent, diagnostics);
-  nc::Emission out = nc::emit_edits(text, moves, edits, feedmodel::decimals_for(job.machine.control, text));
+  nc::Emission out = nc::emit_edits(text, moves, edits, kinematics::decimals_for(job.machine.control, text));
   if (!out.not_made.empty()) {
     const auto& first = out.not_made.front();
     diagnostics.add({Severity::warning,

@@ -13,7 +13,10 @@
 #include "base/units.h"
 #include "calib/cycle_accuracy.h"
 #include "feedmodel/fitted_range.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
+#include "kinematics/machine_moves.h"
+#include "kinematics/machine_program.h"
+#include "kinematics/offset_check.h"
 #include "machine/assumptions.h"
 #include "machine/cases.h"
 #include "machine/set_number.h"
@@ -89,14 +92,14 @@ void check_low_feeds(const nc::Program& program, const nc::Interpretation& moves
 
 nc::Interpretation timed_moves(const nc::Program& program, const machine::Machine& machine, const TimeAsked& asked,
                                Diagnostics& diagnostics) {
-  nc::InterpreterOptions options = api::rotary_interpreter_options(machine, asked.program.impl().options);
-  options.index_table = machine.index.present;
-  nc::Interpretation moves = nc::interpret(program, options, diagnostics);
+  kinematics::ReadingOptions options{.given = asked.program.impl().options, .rotary = kinematics::RotaryWords::always};
+  options.given.index_table = machine.index.present;
+  nc::Interpretation moves = kinematics::read_moves(program, machine, options, diagnostics);
   check_low_feeds(program, moves, diagnostics);
   if (diagnostics.errors() == 0) {
     simulate::check_machine(machine, program, moves, diagnostics);
     api::check_rotary_motion(machine, program, moves, false, diagnostics);
-    api::place_rotary_moves(machine, moves);
+    if (kinematics::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
   }
   feedmodel::check_range(moves, program.source.name(), machine, diagnostics);
   return moves;
@@ -142,8 +145,8 @@ report::MachineCards machine_of(const nc::Interpretation& moves, const machine::
 void add_picture(Timed& timed, const TimeAsked& asked, const nc::Interpretation& moves,
                  const machine::Machine& machine) {
   if (!asked.options.page || !timed.rows.empty()) return;
-  const bool rotary = feedmodel::has_rotary_motion(moves, machine);
-  timed.machine_unknown = rotary && !api::joints_known(moves);
+  const bool rotary = kinematics::has_rotary_motion(moves, machine);
+  timed.machine_unknown = rotary && !kinematics::offsets_known(moves);
   if (rotary && !timed.machine_unknown)
     timed.machine = machine_of(moves, machine);
   else
@@ -168,7 +171,7 @@ Timed sweep_rows(const TimeAsked& asked, const std::vector<Sweep>& sweeps, const
       machine::set_number(changed, sweeps[k].key, values[k]);
       name += fmt::format("{}{}", k > 0 ? " / " : "", format_trimmed(values[k], 4));
     }
-    timed.rotary_motion = feedmodel::has_rotary_motion(moves, changed);
+    timed.rotary_motion = kinematics::has_rotary_motion(moves, changed);
     add_picture(timed, asked, moves, changed);
     timed.rows.push_back(row_of(std::move(name), std::move(values), moves, changed));
   }
@@ -186,7 +189,7 @@ Timed case_rows(const TimeAsked& asked, Diagnostics& diagnostics) {
       const auto same = [&](const Diagnostic& known) { return to_string(known) == to_string(d); };
       if (std::none_of(diagnostics.all().begin(), diagnostics.all().end(), same)) diagnostics.add(d);
     }
-    if (timed.rows.empty()) timed.rotary_motion = feedmodel::has_rotary_motion(moves, one.machine);
+    if (timed.rows.empty()) timed.rotary_motion = kinematics::has_rotary_motion(moves, one.machine);
     add_picture(timed, asked, moves, one.machine);
     timed.rows.push_back(row_of(one.title.empty() ? one.name : one.name + ": " + one.title, {}, moves, one.machine));
   }
@@ -247,7 +250,7 @@ report::TimeSummary summarize(const TimeAsked& asked, Diagnostics& diagnostics) 
       if (!asked.options.trace.empty())
         out.accuracy = calib::cycle_accuracy(calib::read_trace(asked.options.trace, diagnostics), moves, time);
       time.move_s = {};
-      timed.rotary_motion = feedmodel::has_rotary_motion(moves, machine);
+      timed.rotary_motion = kinematics::has_rotary_motion(moves, machine);
       add_picture(timed, asked, moves, machine);
       timed.rows.push_back({machine.path, {}, std::move(time)});
     } else {

@@ -8,8 +8,8 @@
 #include "base/numbers.h"
 #include "base/units.h"
 #include "calib/rotary_lines.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::calib {
 namespace {
@@ -30,9 +30,9 @@ struct Record {
 
 /// Replaces the actual positions by what F counts, sample by sample: X Y Z, the tip in the part's frame, or degrees.
 void set_feed_points(Record& r, const nc::Interpretation& program, const machine::Machine& machine) {
-  if (!feedmodel::has_rotary_motion(program, machine) || r.rotary_actual_deg.empty()) return;
+  if (!kinematics::has_rotary_motion(program, machine) || r.rotary_actual_deg.empty()) return;
   const std::vector<LineFeed> lines = feeds_of_lines(program, machine);
-  const feedmodel::JointMap map(machine, program);
+  const kinematics::JointMap map(machine, program);
   const LineFeed* line = nullptr;
   r.in_degrees.assign(r.line.size(), 0);
   for (std::size_t k = 0; k < r.line.size(); ++k) {
@@ -42,7 +42,8 @@ void set_feed_points(Record& r, const nc::Interpretation& program, const machine
     if (line->rotary_alone)
       r.actual_mm[k] = r.rotary_actual_deg[k];
     else if (line->turn->tip_control)
-      r.actual_mm[k] = map.tool({r.actual_mm[k], r.rotary_actual_deg[k] * (kPi / 180)}, *line->turn).tip_mm;
+      r.actual_mm[k] =
+          map.tool({r.actual_mm[k], r.rotary_actual_deg[k] * (kPi / 180)}, line->turn->tool_length_mm).tip_mm;
   }
 }
 
@@ -66,14 +67,14 @@ Record record_of_joints(const nc::Interpretation& program, const machine::Machin
 
 Record record_of(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine) {
   Record r{trace.period_s, trace.command_mm, trace.actual_mm, trace.line, trace.rotary_actual_deg};
-  if (!feedmodel::has_rotary_motion(program, machine)) return r;
+  if (!kinematics::has_rotary_motion(program, machine)) return r;
   for (std::size_t k = 0; k < trace.rotary_command_deg.size(); ++k) r.command_mm[k] += trace.rotary_command_deg[k];
   set_feed_points(r, program, machine);
   return r;
 }
 
 Record record_of(const nc::Interpretation& program, const machine::Machine& machine) {
-  if (feedmodel::has_rotary_motion(program, machine)) return record_of_joints(program, machine);
+  if (kinematics::has_rotary_motion(program, machine)) return record_of_joints(program, machine);
   Record r;
   r.period_s = machine.control.period_s;
   feedmodel::predict_feed(program, machine, [&](std::span<const feedmodel::TimedSample> run) {
@@ -246,7 +247,7 @@ double motion_time(const Record& r, const std::vector<double>& t_s) {
 /// Time of each line at its programmed feed, by its 1-based number.
 std::vector<double> programmed_line_times_s(const nc::Interpretation& program, const machine::Machine& machine) {
   std::vector<double> line_s;
-  if (feedmodel::has_rotary_motion(program, machine)) {
+  if (kinematics::has_rotary_motion(program, machine)) {
     for (const LineFeed& line : feeds_of_lines(program, machine))
       line_s.push_back(line.feed_per_s > 0 ? line.length / line.feed_per_s : 0.0);
     return line_s;
@@ -281,7 +282,7 @@ std::vector<Part> parts_of(const nc::Interpretation& program) {
 }
 
 std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Machine& machine) {
-  if (!feedmodel::has_rotary_motion(program, machine)) return parts_of(program);
+  if (!kinematics::has_rotary_motion(program, machine)) return parts_of(program);
   const std::vector<LineFeed> lines = feeds_of_lines(program, machine);
   std::vector<Part> parts;
   const LineFeed* last = nullptr;  // of the open part

@@ -15,7 +15,7 @@
 #include "calib/top_speed.h"
 #include "calib/traced_acceleration.h"
 #include "feedmodel/fitted_range.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
 #include "machine/set_number.h"
 
 namespace camber::calib {
@@ -161,7 +161,7 @@ void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_e
   TimedLines parts, blocks;
   // Blocks that overlap have no times of their own.
   const bool overlap =
-      machine.control.kind.turning_blocks_overlap && feedmodel::has_rotary_motion(run.program, machine);
+      machine.control.kind.turning_blocks_overlap && kinematics::has_rotary_motion(run.program, machine);
   const std::vector<LineFeed> feeds = overlap ? feeds_of_lines(run.program, machine) : std::vector<LineFeed>{};
   const auto turns_near = [&](std::uint32_t line) {
     for (std::uint32_t l = line > 0 ? line - 1 : 0; l <= line + 1; ++l)
@@ -199,7 +199,7 @@ bool moves_in_trace(const nc::Interpretation& program, const nc::Move& move, con
 /// place that the program does not give.
 void add_positionings(const FeedRun& run, const Machine& machine, int keep_back_every, std::size_t& count,
                       std::vector<TimedLines>& data) {
-  if (!feedmodel::has_rotary_motion(run.program, machine)) return;
+  if (!kinematics::has_rotary_motion(run.program, machine)) return;
   const std::vector<LineFeed> lines = feeds_of_lines(run.program, machine);
   TimedLines out;
   bool open = false, first = true;

@@ -13,8 +13,8 @@
 
 #include "base/units.h"
 #include "calib/bounded_least_squares.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::calib {
 namespace {
@@ -326,7 +326,7 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
 bool blocks_overlap(const std::vector<TimedLines>& data, const Machine& machine) {
   if (!machine.control.kind.turning_blocks_overlap || machine.control.joint_limits) return false;
   return std::ranges::any_of(
-      data, [&](const TimedLines& lines) { return feedmodel::has_rotary_motion(*lines.program, machine); });
+      data, [&](const TimedLines& lines) { return kinematics::has_rotary_motion(*lines.program, machine); });
 }
 
 LimitCost cost_of(const std::vector<TimedLines>& data, const Machine& machine) {

@@ -14,10 +14,10 @@
 #include "calib/parts_unknowns.h"
 #include "inspect/evaluate.h"
 #include "inspect/model_error.h"
+#include "kinematics/machine_program.h"
 #include "machine/force_law.h"
 #include "machine/set_number.h"
 #include "nc/interpreter.h"
-#include "simulate/rotary_motion.h"
 #include "simulate/setup.h"
 
 namespace camber::calib {
@@ -452,8 +452,10 @@ class Fit {
     Diagnostics ignored;
     std::pair<double, double> out{0, 0};
     try {
-      const auto text = nc::read_program(SourceText::read(job.program), ignored);
-      const auto moves = nc::interpret(text, simulate::interpreter_options(job, false), ignored);
+      const auto program =
+          kinematics::open_program(SourceText::read(job.program), job.machine,
+                                   {.given = {.inch = job.inch}, .rotary = kinematics::RotaryWords::never}, ignored);
+      const nc::Interpretation& moves = program.commanded();
       for (const nc::Move& m : moves.moves) {
         const nc::ModalState& state = moves.state_of(m);
         if (state.tool == tool && m.feed_mm_per_s > 0 && removal::in_operations(moves, m, job.operations))
@@ -697,7 +699,7 @@ Job coarser(Job job) {
 std::vector<std::optional<PredictedSize>> predict_features(const Job& job) {
   Diagnostics found;
   const simulate::Setup setup = simulate::set_up(job, {}, {found, found, found});
-  const simulate::Prediction p = simulate::predict_surface(job, setup.target, setup.program, {}, "");
+  const simulate::Prediction p = simulate::predict_surface(setup.predictor, job, setup.target, setup.program, {}, "");
   std::vector<std::optional<PredictedSize>> out;
   for (const auto& r : inspect::evaluate(job.features, p.surface, job.simulation.voxel_mm))
     out.push_back(r.predicted_mm ? std::optional(PredictedSize{*r.predicted_mm, r.deflection_um / 1000})

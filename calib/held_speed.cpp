@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "calib/rotary_lines.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::calib {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kHeldS = 0.02;          // beside the two windows
 constexpr double kStill = 1e-2;          // mm/s or degrees/s
 
 std::vector<AskedSpeeds> asked_of_lines(const nc::Interpretation& program, const machine::Machine& machine) {
-  const bool turns = feedmodel::has_rotary_motion(program, machine);
+  const bool turns = kinematics::has_rotary_motion(program, machine);
   const std::vector<LineFeed> feeds = turns ? feeds_of_lines(program, machine) : std::vector<LineFeed>{};
   std::vector<AskedSpeeds> lines;
   for (const nc::Move& move : program.moves) {

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "nc/write/program_writer.h"
 
 namespace camber::calib {
@@ -39,7 +39,7 @@ class Writer {
  public:
   Writer(const machine::Machine& machine, const std::string& name, std::string tells)
       : machine_(machine),
-        dialect_(feedmodel::dialect_of(machine.control.kind)),
+        dialect_(kinematics::dialect_of(machine.control.kind)),
         writer_(nc::program_writer(dialect_, {.title = name, .decimals = 6, .corner_tolerance_mm = 0.01})) {
     program_.name = name + std::string(dialect_.file_extension);
     program_.tells = std::move(tells);

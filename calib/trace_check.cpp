@@ -11,7 +11,7 @@
 #include "base/units.h"
 #include "calib/held_speed.h"
 #include "calib/top_speed.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"
 
 namespace camber::calib {
@@ -155,7 +155,7 @@ class Checker {
 
   std::vector<Joints> ends_of_moves() const {
     std::vector<Joints> ends;
-    if (!feedmodel::has_rotary_motion(run_.program, machine_)) {
+    if (!kinematics::has_rotary_motion(run_.program, machine_)) {
       for (const nc::Move& m : run_.program.moves) ends.push_back({m.end_mm.x(), m.end_mm.y(), m.end_mm.z(), 0, 0, 0});
       return ends;
     }

@@ -85,7 +85,7 @@ void look_at_depth(const Evidence& e, Diagnostics& diagnostics) {
   constexpr double kDeepSlot = 3, kDeepSide = 8;  // diameters
   constexpr double kFraction = 0.15;              // of the tool's way in material
   if (!e.survey) return;
-  const nc::Interpretation& moves = e.program.moves;
+  const nc::Interpretation& moves = e.program.moves_in_part();
   for (const ToolWork& work : e.tools) {
     const double d = work.tool->diameter_mm;
     double deep_mm = 0, deepest = 0;

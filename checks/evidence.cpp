@@ -65,7 +65,7 @@ void add_cut(const simulate::MoveCut& m, double power_W, std::uint32_t move, Too
 }
 
 std::vector<ToolWork> tool_works(const Evidence& e) {
-  const nc::Interpretation& moves = e.program.moves;
+  const nc::Interpretation& moves = e.program.moves_in_part();
   std::vector<ToolWork> out;
   for (const int number : simulate::cutting_tools(moves, e.program.selected, e.program.holes)) {
     const auto tool = e.job.tools.find(number);
@@ -111,13 +111,13 @@ double Spread::at(double fraction) const {
 Evidence::Evidence(const machine::Job& of_job, const simulate::SimulatedProgram& of_program)
     : job(of_job),
       program(of_program),
-      said(machine::tools_in_comments(of_program.text.source, uses_inches(of_program.moves))),
+      said(machine::tools_in_comments(of_program.text().source, uses_inches(of_program.moves_in_part()))),
       stock(simulate::stock_box(of_job)),
       specific_force_MPa(specific_force(of_job.material)),
       assumed(machine::assumed_keys(of_job.path)) {
   if (stock) {
     Diagnostics of_places;
-    simulate::check_places(program.text.source.name(), simulate::places_of(job, program, *stock), of_places);
+    simulate::check_places(program.text().source.name(), simulate::places_of(job, program, *stock), of_places);
     elsewhere = !of_places.all().empty();
     const double cell = simulate::quick_cell_mm(job, program, *stock, job.simulation.voxel_mm);
     survey = simulate::survey_heights(job, program, {.cell_mm = cell, .tolerance_mm = cell});
@@ -161,8 +161,9 @@ Diagnostic Evidence::at_job(Severity severity, std::string message, std::string 
 }
 
 Diagnostic Evidence::at_move(Severity severity, std::uint32_t move, std::string message, std::string check) const {
-  return program.text.source.diagnostic(severity, program.text.blocks[program.moves.moves[move].block].offset,
-                                        std::move(message), std::move(check));
+  return program.text().source.diagnostic(severity,
+                                          program.text().blocks[program.moves_in_part().moves[move].block].offset,
+                                          std::move(message), std::move(check));
 }
 
 }  // namespace camber::checks

@@ -34,21 +34,23 @@ void measure(const removal::PartMesh& part, const Cutters& cutters, const Vec3& 
 
 /// Places of the milling moves at equal distances.
 std::vector<PartFit::Place> places_of(const machine::Job& job, const simulate::SimulatedProgram& program) {
-  const auto& moves = program.moves.moves;
+  const auto& moves = program.moves_in_part().moves;
   const auto counts = [&](std::size_t i) {
-    return program.selected[i] && !moves[i].reference && job.tools.contains(program.moves.state_of(moves[i]).tool);
+    return program.selected[i] && !moves[i].reference &&
+           job.tools.contains(program.moves_in_part().state_of(moves[i]).tool);
   };
   double all = 0;
   for (std::size_t i = 0; i < moves.size(); ++i)
-    if (counts(i)) all += nc::length_mm(program.moves, moves[i]);
+    if (counts(i)) all += nc::length_mm(program.moves_in_part(), moves[i]);
   std::vector<PartFit::Place> out;
   const double apart = all / kPlaces;
   double next = apart / 2, so_far = 0;
   for (std::uint32_t i = 0; i < moves.size() && apart > 0; ++i) {
     if (!counts(i)) continue;
-    const double length = nc::length_mm(program.moves, moves[i]);
+    const double length = nc::length_mm(program.moves_in_part(), moves[i]);
     for (; next < so_far + length; next += apart)
-      out.push_back({i, program.pose_at(i, (next - so_far) / length), program.moves.state_of(moves[i]).tool, 0});
+      out.push_back(
+          {i, program.pose_at(i, (next - so_far) / length), program.moves_in_part().state_of(moves[i]).tool, 0});
     so_far += length;
   }
   return out;

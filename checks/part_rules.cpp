@@ -39,7 +39,7 @@ std::string sides_out(const machine::Box& part, const machine::Box& stock) {
 }  // namespace
 
 void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
-  if (e.job.part.mesh.empty() || e.program.moves.moves.empty()) return;
+  if (e.job.part.mesh.empty() || e.program.moves_in_part().moves.empty()) return;
   const removal::PartMesh part(e.job.part.mesh);
   if (e.stock) {
     const std::size_t before = diagnostics.errors();

@@ -44,7 +44,7 @@ void check_job_values(const machine::Job& job, Diagnostics& diagnostics) {
 }
 
 void check_program(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
-  simulate::check_machine(job.machine, program.text, program.text_moves(), diagnostics);
+  simulate::check_machine(job.machine, program.text(), program.moves_in_program(), diagnostics);
   check_plausibility(job, program, diagnostics);
 }
 

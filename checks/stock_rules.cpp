@@ -36,14 +36,14 @@ void look_at_roughed_top(const Evidence& e, Diagnostics& diagnostics) {
 }  // namespace
 
 void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
-  if (!e.stock || e.elsewhere || e.program.rotary) return;
+  if (!e.stock || e.elsewhere || e.program.turns()) return;
   constexpr double kSame_mm = 0.05;
   // The highest place of which the program says where it is.
-  nc::KnownPlaces places(e.program.text, e.program.moves);
+  nc::KnownPlaces places(e.program.text(), e.program.moves_in_part());
   double highest = -std::numeric_limits<double>::infinity();
   std::uint32_t where = 0;
-  for (std::uint32_t i = 0; i < e.program.moves.moves.size(); ++i) {
-    const nc::Move& m = e.program.moves.moves[i];
+  for (std::uint32_t i = 0; i < e.program.moves_in_part().moves.size(); ++i) {
+    const nc::Move& m = e.program.moves_in_part().moves[i];
     if (!places.next(m).end || m.reference || m.kind == nc::MoveKind::dwell || m.end_mm.z() <= highest) continue;
     highest = m.end_mm.z();
     where = i;
@@ -66,7 +66,7 @@ void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
   for (const ToolWork& work : e.tools) beside += work.cut.beside_mm, all += work.cut.length_mm;
   if (all <= 0 || beside <= kOdd * all) return;
   const auto longest = std::ranges::max_element(e.survey->moves, {}, [](const auto& m) { return m.beside_mm; });
-  const nc::Extents tips = simulate::tip_extents(e.program.moves, e.program.selected, e.program.holes);
+  const nc::Extents tips = simulate::tip_extents(e.program.moves_in_part(), e.program.selected, e.program.holes);
   const Vec3 &lo = e.stock->min_mm, &hi = e.stock->max_mm;
   diagnostics.add(e.at_move(
       beside > kMeaningless * all ? e.error_of(0, {}, true) : Severity::warning,

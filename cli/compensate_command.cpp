@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "api/compensation.h"
 #include "api/job.h"
 #include "base/output_file.h"
 #include "base/temporary_folder.h"
@@ -41,7 +42,8 @@ int say_verdict(bool success, const std::string& headline, const std::vector<std
   return kNumbersDidNotWorkOut;
 }
 
-CompensateResult compensate_shown(const Job& job, CompensateOptions asked, const GlobalOptions& options) {
+CompensateResult compensate_shown(const Job& job, CompensateOptions asked, const GlobalOptions& options,
+                                  const simulate::Predictor& predictor) {
   ProgressLine progress(options, "reading");
   RunOptions run = run_options(progress, options);
   run.warn = [&, warn = run.warn](const std::vector<Diagnostic>& warnings) {
@@ -59,19 +61,19 @@ CompensateResult compensate_shown(const Job& job, CompensateOptions asked, const
     if (!options.quiet) fmt::print("{}\n", sentence);
     std::fflush(stdout);
   };
-  return v0::compensate(job, asked, run);
+  return api::compensate(job, asked, run, predictor);
 }
 
 /// `json`: the figures; empty where there are none. `emitted`: whether a program was written.
 int compensate_program(const Job& job, const CompensateArguments& arguments, const GlobalOptions& options,
-                       std::string& json, bool& emitted) {
+                       const simulate::Predictor& predictor, std::string& json, bool& emitted) {
   check_levers(arguments.options.levers, job);
   CompensateOptions asked = arguments.options;
   asked.page = !arguments.report.empty();
   asked.throw_if_unwritten = false;
   CompensateResult result;
   try {
-    result = compensate_shown(job, asked, options);
+    result = compensate_shown(job, asked, options, predictor);
   } catch (const BeyondModel& beyond) {
     print_error(beyond.what());
     return kNumbersDidNotWorkOut;
@@ -113,7 +115,8 @@ std::string own_output(const std::string& folder, const std::string& program, co
 
 /// Each program on what the compensated one before it has left; the emitted programs have the names of the given ones,
 /// in the folder of the output.
-int compensate_in_turn(const JobOfPrograms& all, const CompensateArguments& arguments, const GlobalOptions& options) {
+int compensate_in_turn(const JobOfPrograms& all, const CompensateArguments& arguments, const GlobalOptions& options,
+                       const simulate::Predictor& predictor) {
   if (!arguments.options.measured.empty()) {
     print_error("--measured belongs to one program, and the job has several");
     return kCommandLineWrong;
@@ -135,7 +138,7 @@ int compensate_in_turn(const JobOfPrograms& all, const CompensateArguments& argu
     own.json.clear();
     if (!options.quiet) fmt::print("{}{}\n", i > 0 ? "\n" : "", one.program_path());
     bool emitted = false;
-    status = std::max(status, compensate_program(one, own, options, results.emplace_back(), emitted));
+    status = std::max(status, compensate_program(one, own, options, predictor, results.emplace_back(), emitted));
     outputs.push_back(emitted ? own.options.output : "");
     if (i + 1 == all.programs.size()) break;
     Job left = one;
@@ -178,12 +181,13 @@ std::string record_of(const CompensateArguments& arguments) {
 
 }  // namespace
 
-int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options) {
+int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options,
+                   const simulate::Predictor& predictor) {
   const JobOfPrograms all = read_job_of_programs(arguments.job);
-  if (all.programs.size() > 1) return compensate_in_turn(all, arguments, options);
+  if (all.programs.size() > 1) return compensate_in_turn(all, arguments, options, predictor);
   std::string json;
   bool emitted = false;
-  return compensate_program(all.job, arguments, options, json, emitted);
+  return compensate_program(all.job, arguments, options, predictor, json, emitted);
 }
 
 void add_compensate_command(CLI::App& app, const GlobalOptions& options, Action& chosen) {

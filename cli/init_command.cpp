@@ -12,7 +12,7 @@
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
-#include "kinematics/rotary_options.h"
+#include "kinematics/control_options.h"
 #include "machine/assumptions.h"
 #include "machine/machine.h"
 #include "machine/machine_presets.h"

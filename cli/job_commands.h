@@ -7,6 +7,7 @@
 #include "camber/compensate.h"
 #include "camber/predict.h"
 #include "cli/command_line.h"
+#include "simulate/predict.h"
 
 namespace camber::cli {
 
@@ -33,7 +34,8 @@ struct CompensateArguments {
 
 /// Throws InputError. Returns kDone or kNumbersDidNotWorkOut (a static solution did not settle, or the residual is
 /// over the tolerance).
-int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options);
+int run_compensate(const CompensateArguments& arguments, const GlobalOptions& options,
+                   const simulate::Predictor& predictor = simulate::predict);
 
 struct AdaptArguments {
   std::string job{};

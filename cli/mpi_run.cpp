@@ -24,10 +24,11 @@
 #include <fmt/format.h>
 #include <mpi.h>
 
+#include "api/compensation.h"
 #include "api/section_run.h"
 #include "base/output_file.h"
 #include "cli/progress.h"
-#include "simulate/shared_prediction.h"
+#include "distribute/shared_prediction.h"
 #endif
 
 namespace camber::cli {
@@ -158,34 +159,36 @@ std::uint64_t exchange_all(const Ranks& ranks, const Bytes& bytes, const Take& t
 
 /// A rank's own parts are files, so that they are not lost when another rank is; what it needs of others' comes as
 /// messages.
-class RankParts : public api::PartStore {
+class RankParts : public distribute::PartStore {
  public:
-  RankParts(const Ranks& ranks, const std::string& folder, const api::PartKey& key)
+  RankParts(const Ranks& ranks, const std::string& folder, const distribute::PartKey& key)
       : ranks_(ranks), files_(folder, key), sections_(key.sections) {}
 
-  bool has(const api::PartName& name) override { return files_.has(name); }
-  void give(const api::PartName& name, const Write& write) override { files_.give(name, write); }
-  std::string take(const api::PartName& name) override {
+  bool has(const distribute::PartName& name) override { return files_.has(name); }
+  void give(const distribute::PartName& name, const Write& write) override { files_.give(name, write); }
+  std::string take(const distribute::PartName& name) override {
     if (name.section == ranks_.rank()) return files_.take(name);
-    if (!merging_) return parts_.at(api::file_name(name));
-    const int wanted[kWanted] = {name.stage == api::PartStage::sweep ? kSweep : kSolve, name.round};
+    if (!merging_) return parts_.at(distribute::file_name(name));
+    const int wanted[kWanted] = {name.stage == distribute::PartStage::sweep ? kSweep : kSolve, name.round};
     const int of = static_cast<int>(name.section);
     MPI_Send(wanted, kWanted, MPI_INT, of, kRequest, MPI_COMM_WORLD);
     return receive(of);
   }
-  std::function<std::string()> take_pieces(const api::PartName& name) override { return files_.take_pieces(name); }
-  void check(const api::PartName& name) override {
+  std::function<std::string()> take_pieces(const distribute::PartName& name) override {
+    return files_.take_pieces(name);
+  }
+  void check(const distribute::PartName& name) override {
     if (name.section == ranks_.rank()) files_.check(name);  // the other ranks have just written theirs
   }
-  void exchange_parts(api::SectionRun& run, api::PartStage stage, int round) {
+  void exchange_parts(distribute::SectionRun& run, distribute::PartStage stage, int round) {
     // What no later round reads.
-    if (stage == api::PartStage::solve && round > 2)
+    if (stage == distribute::PartStage::solve && round > 2)
       for (std::size_t s = 0; s < sections_; ++s)
-        parts_.erase(api::file_name({api::PartStage::solve, round - 2, s, sections_}));
-    const auto name = [&](std::size_t section) { return api::PartName{stage, round, section, sections_}; };
-    sent_bytes_ +=
-        exchange_all(ranks_, run.part_for_others(name(ranks_.rank())),
-                     [&](std::size_t from, std::string part) { parts_[api::file_name(name(from))] = std::move(part); });
+        parts_.erase(distribute::file_name({distribute::PartStage::solve, round - 2, s, sections_}));
+    const auto name = [&](std::size_t section) { return distribute::PartName{stage, round, section, sections_}; };
+    sent_bytes_ += exchange_all(
+        ranks_, run.part_for_others(name(ranks_.rank())),
+        [&](std::size_t from, std::string part) { parts_[distribute::file_name(name(from))] = std::move(part); });
   }
   /// From now on rank 0 takes whole parts of others, as a merge asks for them.
   void begin_merge() {
@@ -208,7 +211,8 @@ class RankParts : public api::PartStore {
       int wanted[kWanted] = {};
       MPI_Recv(wanted, kWanted, MPI_INT, 0, kRequest, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
       if (wanted[0] == kEnd) return wanted[1];
-      const api::PartStage stage = wanted[0] == kSweep ? api::PartStage::sweep : api::PartStage::solve;
+      const distribute::PartStage stage =
+          wanted[0] == kSweep ? distribute::PartStage::sweep : distribute::PartStage::solve;
       send(files_.take({stage, wanted[1], ranks_.rank(), sections_}), 0);
     }
   }
@@ -220,7 +224,7 @@ class RankParts : public api::PartStore {
   static constexpr int kSweep = 0, kSolve = 1, kEnd = 2;
 
   const Ranks& ranks_;
-  api::PartFiles files_;
+  distribute::PartFiles files_;
   std::size_t sections_;
   std::map<std::string, std::string> parts_;  ///< of others: what this rank needs of them
   bool merging_ = false;
@@ -247,7 +251,7 @@ double balance_percent(const std::vector<std::uint64_t>& of_ranks) {
 }
 
 /// What every rank has done, on rank 0. `work`: before the merge.
-void tell_work(const Ranks& ranks, const simulate::SectionWork& work, std::uint64_t sent_bytes) {
+void tell_work(const Ranks& ranks, const distribute::SectionWork& work, std::uint64_t sent_bytes) {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
   const auto milliseconds = [](const timeval& t) {
@@ -282,10 +286,10 @@ int predict_on(const Ranks& ranks, const PredictArguments& arguments, GlobalOpti
   api::Run of_library(how);
   const machine::Job job = machine::read_job(arguments.job, diagnostics);
   settle(diagnostics, options);
-  const api::PartKey key = api::part_key(job, ranks.size(), asked.forces_at);
+  const distribute::PartKey key = distribute::part_key(job, ranks.size(), asked.forces_at);
   RankParts store(ranks, asked.output_folder, key);
   int round = 1;
-  simulate::SectionWork work;
+  distribute::SectionWork work;
   std::shared_ptr<simulate::ReadPrograms> programs;
   const auto compute = [](const auto& part) {
     const PartInWork in_work;
@@ -293,13 +297,13 @@ int predict_on(const Ranks& ranks, const PredictArguments& arguments, GlobalOpti
   };
   {
     const EndsBetweenParts ends;
-    api::SectionRun run(job, key, store, of_library.steps(), of_run);
+    distribute::SectionRun run(job, key, store, of_library.steps(), of_run);
     compute([&] { run.sweep(ranks.rank()); });
-    store.exchange_parts(run, api::PartStage::sweep, 1);
+    store.exchange_parts(run, distribute::PartStage::sweep, 1);
     for (bool again = true; again;) {
       compute([&] { run.solve(ranks.rank(), round); });
-      store.exchange_parts(run, api::PartStage::solve, round);
-      again = run.is_static() && round < api::kMaxSectionRounds && (round == 1 || run.solved_again(round) > 0);
+      store.exchange_parts(run, distribute::PartStage::solve, round);
+      again = run.is_static() && round < distribute::kMaxSectionRounds && (round == 1 || run.solved_again(round) > 0);
       if (again) ++round;
     }
     work = run.work();
@@ -315,28 +319,28 @@ int predict_on(const Ranks& ranks, const PredictArguments& arguments, GlobalOpti
 }
 
 /// How the predictions of a compensation were shared.
-void tell_predictions(const simulate::CrewFigures& f) {
+void tell_predictions(const distribute::CrewFigures& f) {
   fmt::print(stderr, "{} predictions, {} of them from the one before: {} pieces, {} rounds, {} pieces solved\n",
              f.predictions, f.from_the_last, f.pieces, f.rounds, f.solved);
 }
 
 /// Every rank compensates, and the predictions are shared; rank 0 writes.
 int compensate_on(const Ranks& ranks, const CompensateArguments& arguments, const GlobalOptions& options) {
-  const simulate::Crew crew{ranks.rank(), ranks.size(), [&](const std::function<std::string(std::size_t)>& bytes) {
-                              std::vector<std::string> out(ranks.size());
-                              exchange_all(ranks, bytes,
-                                           [&](std::size_t from, std::string given) { out[from] = std::move(given); });
-                              return out;
-                            }};
-  const simulate::CrewScope shared(crew);
+  const distribute::Crew crew{
+      ranks.rank(), ranks.size(), [&](const std::function<std::string(std::size_t)>& bytes) {
+        std::vector<std::string> out(ranks.size());
+        exchange_all(ranks, bytes, [&](std::size_t from, std::string given) { out[from] = std::move(given); });
+        return out;
+      }};
+  distribute::CrewPredictions shared(crew);
   int status = kDone;
   if (ranks.rank() == 0) {
-    status = run_compensate(arguments, options);
+    status = run_compensate(arguments, options, shared.predictor());
   } else {
     CompensateOptions asked = arguments.options;
     asked.dry_run = true;  // rank 0 writes
     try {
-      v0::compensate(read_job(arguments.job), asked);
+      api::compensate(read_job(arguments.job), asked, {}, shared.predictor());
     } catch (const BeyondModel&) {  // so does rank 0
     }
   }

@@ -14,12 +14,12 @@
 #include "cli/mpi_run.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "distribute/sections.h"
 #include "report/joined_json.h"
-#include "simulate/sections.h"
 
 namespace camber::cli {
 
-using simulate::kMaxSectionRounds;
+using distribute::kMaxSectionRounds;
 
 int finish_prediction(const PredictResult& result, std::size_t settled, const std::string& json,
                       const GlobalOptions& options) {

@@ -98,7 +98,7 @@ class Places {
 
  private:
   std::optional<ShiftPath::PointInterval> find(const MoveMap::MovePlace& at) const {
-    if (!path_.contains(at.move) || !given_.moves.moves[at.move].editable) return std::nullopt;
+    if (!path_.contains(at.move) || !given_.moves_in_part().moves[at.move].editable) return std::nullopt;
     return path_.find(at.move, at.fraction);
   }
 
@@ -121,7 +121,7 @@ void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPa
                const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given) {
   o.place = place;
   const ControlPoint &from = path.points()[place.lower], &to = path.points()[place.lower + 1];
-  const auto tool = job.tools.find(given.moves.state_of(given.moves.moves[to.move]).tool);
+  const auto tool = job.tools.find(given.moves_in_part().state_of(given.moves_in_part().moves[to.move]).tool);
   const Vec3 tip = from.place_mm + place.upper_fraction * (to.place_mm - from.place_mm);
   const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
   const double from_fraction = from.move == to.move ? from.fraction : 0;

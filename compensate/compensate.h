@@ -87,6 +87,7 @@ struct Outlook {
 };
 
 struct CompensationResult {
+  kinematics::MachineProgram given;          ///< the program that was compensated, as it was read
   std::string text;                          ///< the emitted program of the best round
   std::vector<std::uint32_t> block_of_line;  ///< by line of `text`, see nc::Emission; empty: the given program
   std::vector<LineRole> lines;               ///< one per line of the given program
@@ -152,6 +153,7 @@ struct CompensateOptions {
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< parameters for Compensation::band
+  simulate::Predictor predictor = simulate::predict;
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.
   std::function<std::string(const CompensationResult&)> header{};
 };

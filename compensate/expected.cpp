@@ -12,11 +12,11 @@ std::vector<Vec3> nominal_bending(const machine::Job& job, const simulate::Setup
   machine::Job rigid = job;
   rigid.simulation.coupling = machine::Coupling::rigid;
   simulate::SimulatedProgram nominal = given.program;
-  nominal.path = removal::nominal_path(nominal.moves, nominal.selected, nominal.path, nominal.part_path());
+  nominal.path = removal::nominal_path(nominal.moves_in_part(), nominal.selected, nominal.path, nominal.part_path());
   simulate::PredictOptions options;
   options.progress = progress;
   std::vector<Vec3> out;
-  for (const simulate::StampLoad& load : simulate::predict(rigid, given.target, nominal, options).cut.loads)
+  for (const simulate::StampLoad& load : given.predictor(rigid, given.target, nominal, options).cut.loads)
     out.push_back(load.contact_deflection_mm);
   return out;
 }

@@ -30,13 +30,13 @@ void check_feeds(const simulate::SimulatedProgram& program, const std::vector<bo
   constexpr double kOther = 0.5;
   std::vector<nc::MoveEdit> edits;
   for (std::uint32_t m = 0; m < selected.size(); ++m)
-    if (selected[m] && program.moves.moves[m].editable)
-      edits.push_back({.move = m, .feed_mm_per_s = kOther * program.moves.moves[m].feed_mm_per_s});
-  const nc::Emission emission = nc::emit_edits(program.text, program.text_moves(), edits, {});
+    if (selected[m] && program.moves_in_part().moves[m].editable)
+      edits.push_back({.move = m, .feed_mm_per_s = kOther * program.moves_in_part().moves[m].feed_mm_per_s});
+  const nc::Emission emission = nc::emit_edits(program.text(), program.moves_in_program(), edits, {});
   if (edits.empty() || emission.not_made.size() < edits.size()) return;
   const nc::EditNotMade& first = emission.not_made.front();
   diagnostics.add({Severity::error,
-                   {program.text.source.name(), program.moves.moves[first.move].block + 1, 1},
+                   {program.text().source.name(), program.moves_in_part().moves[first.move].block + 1, 1},
                    fmt::format("levers names \"feed\", but the feed of the moves to compensate cannot be changed: {}; "
                                "levers = [\"shift\"] was expected",
                                nc::to_string(first.why)),
@@ -52,7 +52,7 @@ FeedLever::FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& gi
   for (std::size_t c = 0; c < path.chains().size(); ++c) {
     const Chain& chain = path.chains()[c];
     for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i) {
-      const nc::Move& move = given.moves.moves[points[i].move];
+      const nc::Move& move = given.moves_in_part().moves[points[i].move];
       const bool whole = !splittable || move.kind == nc::MoveKind::arc;
       const bool same_move = i > chain.from + 1 && points[i - 1].move == points[i].move;
       if (!whole || !same_move) units_.push_back({.chain = c, .feed_mm_per_s = move.feed_mm_per_s});

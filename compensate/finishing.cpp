@@ -16,11 +16,11 @@ using simulate::SimulatedProgram;
 /// Operations in order, and for each move the index of its own (the moves that are not simulated: nonsense).
 std::vector<Operation> operations_of(const SimulatedProgram& program, std::vector<std::size_t>& of_move) {
   std::vector<Operation> out;
-  of_move.assign(program.moves.moves.size(), 0);
-  for (std::size_t m = 0; m < program.moves.moves.size(); ++m) {
+  of_move.assign(program.moves_in_part().moves.size(), 0);
+  for (std::size_t m = 0; m < program.moves_in_part().moves.size(); ++m) {
     if (!program.selected[m]) continue;
-    const nc::Move& move = program.moves.moves[m];
-    const int tool = program.moves.state_of(move).tool;
+    const nc::Move& move = program.moves_in_part().moves[m];
+    const int tool = program.moves_in_part().state_of(move).tool;
     const std::size_t line = move.block + 1;
     if (out.empty() || out.back().tool != tool) out.push_back({tool, line, line, 0, 0, 0});
     out.back().first_line = std::min(out.back().first_line, line);
@@ -52,7 +52,8 @@ Finishing find_finishing(const machine::Job& job, const SimulatedProgram& progra
   out.operations = operations_of(program, of_move);
   distribute_surface(program, surface, of_move, out.operations);
   const auto& wanted = job.compensation.operations;
-  out.moves = removal::selected_moves(program.moves, simulate::as_lines(wanted, program.text, program.moves));
+  out.moves = removal::selected_moves(program.moves_in_part(),
+                                      simulate::as_lines(wanted, program.text(), program.moves_in_part()));
   for (std::size_t m = 0; m < out.moves.size(); ++m) {
     out.moves[m] = out.moves[m] && program.selected[m];
     if (!out.moves[m]) continue;
@@ -64,10 +65,10 @@ Finishing find_finishing(const machine::Job& job, const SimulatedProgram& progra
 }
 
 std::vector<LineRole> line_roles(const SimulatedProgram& program, const std::vector<bool>& compensated) {
-  std::vector<LineRole> out(program.text.blocks.size(), LineRole::none);
+  std::vector<LineRole> out(program.text().blocks.size(), LineRole::none);
   for (std::size_t m = 0; m < compensated.size(); ++m) {
     if (!program.selected[m]) continue;
-    const nc::Move& move = program.moves.moves[m];
+    const nc::Move& move = program.moves_in_part().moves[m];
     LineRole& role = out[move.block];
     if (compensated[m] && move.editable)
       role = LineRole::compensated;
@@ -83,31 +84,31 @@ void check_compensated(const SimulatedProgram& program, const std::vector<bool>&
   for (std::size_t m = 0; m < moves.size(); ++m) {
     if (!moves[m]) continue;
     ++all;
-    const nc::Move& move = program.moves.moves[m];
+    const nc::Move& move = program.moves_in_part().moves[m];
     if (move.editable) ++editable;
-    if (!program.moves.state_of(move).cutter_radius) continue;
+    if (!program.moves_in_part().state_of(move).cutter_radius) continue;
     if (!first) first = &move;
     ++count;
   }
   if (all == 0)
     diagnostics.add({Severity::error,
-                     {program.text.source.name(), 0, 0},
+                     {program.text().source.name(), 0, 0},
                      "[compensation] operations selects no simulated move; a tool, lines or a comment of cutting moves "
                      "was expected",
                      "nothing-to-compensate",
                      {}});
   if (!first && all > 0 && editable == 0) {
     const auto made = static_cast<std::size_t>(std::find(moves.begin(), moves.end(), true) - moves.begin());
-    diagnostics.add(
-        program.text.source.diagnostic(Severity::error, program.text.blocks[program.moves.moves[made].block].offset,
-                                       "all moves to compensate, from here on, come from a loop, an expression or a "
-                                       "subprogram that is called more than once or is in another file, and have no "
-                                       "words of their own in the text; a program without these was expected",
-                                       "nothing-to-compensate"));
+    diagnostics.add(program.text().source.diagnostic(
+        Severity::error, program.text().blocks[program.moves_in_part().moves[made].block].offset,
+        "all moves to compensate, from here on, come from a loop, an expression or a "
+        "subprogram that is called more than once or is in another file, and have no "
+        "words of their own in the text; a program without these was expected",
+        "nothing-to-compensate"));
   }
   if (!first) return;
-  diagnostics.add(program.text.source.diagnostic(
-      Severity::error, program.text.blocks[first->block].offset,
+  diagnostics.add(program.text().source.diagnostic(
+      Severity::error, program.text().blocks[first->block].offset,
       fmt::format("{} move{} to compensate run{} under cutter radius compensation (G41, G42), from here on: the "
                   "control computes their path, and the text has no words for it; a program of the cutter centre, or "
                   "[compensation] operations without these blocks, was expected",

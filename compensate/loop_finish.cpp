@@ -24,7 +24,7 @@ std::vector<std::uint32_t> Loop::given_blocks(std::vector<std::uint32_t> block_o
 
 /// Lines of the given program that do not stand in the emitted one as they were, but for those of first cuts.
 std::size_t Loop::count_changed(const Emitted& emitted) const {
-  const nc::Program& program = given().text;
+  const nc::Program& program = given().text();
   const SourceText text("", emitted.emission.text);
   const std::size_t count = program.source.line_count();
   std::vector<bool> same(count, false), met(count, false);
@@ -70,7 +70,7 @@ std::vector<ProgramLine> Loop::lines_of(const Trial& trial, std::span<const std:
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     const auto stamp = static_cast<std::size_t>(stamps[i]);
     if (stamps[i] < 0 || stamp >= program.path.stamps.size()) continue;
-    const std::size_t block = program.moves.moves[program.path.stamps[stamp].move].block;
+    const std::size_t block = program.moves_in_part().moves[program.path.stamps[stamp].move].block;
     out[i] = {given(block), block + 1};
   }
   return out;
@@ -111,7 +111,7 @@ Tried Loop::tried(const CompensationResult& out) const {
 
 void Loop::say_passes(CompensationResult& out) const {
   if (!now_->repeated) return;
-  const auto runs = nc::cut_runs(given().text, given().moves, versions_.front()->compensated);
+  const auto runs = nc::cut_runs(given().text(), given().moves_in_part(), versions_.front()->compensated);
   std::vector<nc::CutRun> able;
   for (const nc::CutRun& run : runs)
     if (run.why_not == nc::RunGap::none) able.push_back(run);
@@ -137,7 +137,8 @@ void Loop::finish(CompensationResult& out) {
   out.max_shift_mm = best.largest_shift_mm;
   say_passes(out);
   if (best_->emitted) {
-    warn_of_not_emitted(given().text, given().moves, in_given(best_->emitted->emission.not_made), diagnostics_);
+    warn_of_not_emitted(given().text(), given().moves_in_part(), in_given(best_->emitted->emission.not_made),
+                        diagnostics_);
     out.quality = best_->emitted->quality;
   }
   out.surface_steps =
@@ -176,8 +177,8 @@ void Loop::finish(CompensationResult& out) {
   for (const Diagnostic& d : travel.all())
     if (d.severity == Severity::error) diagnostics_.add(d);
   diagnostics_.throw_if_errors();
-  out.blocks_before = given().text.source.line_count();
-  out.blocks_after = program.text.source.line_count();
+  out.blocks_before = given().text().source.line_count();
+  out.blocks_after = program.text().source.line_count();
   out.blocks_changed = best_->emitted ? count_changed(*best_->emitted) : 0;
   out.settled = first.unsettled == 0 && best.unsettled == 0;
   const double imbalance = simulate::imbalance(best_->chip_mm3, best_->stock_mm3, job_.simulation.voxel_mm);
@@ -208,6 +209,7 @@ void Loop::recheck_on(double voxel_mm, CompensationResult& out) {
 }
 
 void Loop::check(CompensationResult& out) {
+  out.given = given();
   const Emitted* emitted = best_->emitted.get();
   for (const double voxel_mm : options_.recheck_voxels_mm) recheck_on(voxel_mm, out);
   std::vector<std::string> names;
@@ -218,7 +220,7 @@ void Loop::check(CompensationResult& out) {
         changes_mm(job_, group, setup_, emitted, out.surface_after, out.unknown_parameters, options_.progress));
   }
   if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, depth_limit_um_ / 1000);
-  out.text = emitted ? emitted->emission.text : setup_.program.text.source.text();
+  out.text = emitted ? emitted->emission.text : setup_.program.text().source.text();
   if (emitted)
     out.block_of_line = given_blocks(emitted->emission.block_of_line);
   else if (now_->repeated)

@@ -53,8 +53,8 @@ void Loop::lower_feeds(CompensationResult& out, double percent) {
   if (!has(machine::Lever::feed) || now_->feeds_stuck || left_s < kMinExtra * given_s_) return;
   if (!now_->feeds) {
     const bool splittable = !std::isinf(spacing_mm());
-    const std::vector<double> least =
-        least_feeds(*now_->path, setup_.program.moves, job_.machine, job_.compensation.min_feed_percent / 100);
+    const std::vector<double> least = least_feeds(*now_->path, setup_.program.moves_in_part(), job_.machine,
+                                                  job_.compensation.min_feed_percent / 100);
     now_->feeds.emplace(*now_->path, setup_.program, splittable, least);
   }
   const bool budget = budget_percent().has_value();

@@ -63,7 +63,8 @@ Loop::Loop(const machine::Job& job, Diagnostics& diagnostics, const CompensateOp
       setup_(
           simulate::set_up(job,
                            {.check = [&](const SimulatedProgram& program) { check_given(job, program, diagnostics); },
-                            .clearance = true},
+                            .clearance = true,
+                            .predictor = options.predictor},
                            {.program = diagnostics, .original = diagnostics, .target = diagnostics})),
       trials_(job_, setup_) {
   simulate::check_clearance(job_, setup_, diagnostics_);
@@ -84,15 +85,15 @@ void Loop::start(CompensationResult& out) {
   given->keep(std::move(prediction));
   out.finishing = find_finishing(job_, setup_.program, given->surface);
   out.lines = line_roles(setup_.program, out.finishing.moves);
-  out.operations = simulate::as_lines(job_.operations, setup_.program.text, setup_.program.moves);
+  out.operations = simulate::as_lines(job_.operations, setup_.program.text(), setup_.program.moves_in_part());
   check_levers(out.finishing.moves);
-  nc::warn_of_uneditable(setup_.program.text, setup_.program.moves, out.finishing.moves, diagnostics_);
+  nc::warn_of_uneditable(setup_.program.text(), setup_.program.moves_in_part(), out.finishing.moves, diagnostics_);
   now_->compensated = out.finishing.moves;
   begin_version(*now_);
   given->shifts = now_->path->shifts();
   given->fractions = FeedLever::fractions(*now_->path);
   given->observed = trials_.observe(*now_->path, nullptr, given->surface);
-  reach_ = reach_of(*now_->path, setup_.program.moves, given->observed, given->surface, setup_.own_stamps());
+  reach_ = reach_of(*now_->path, setup_.program.moves_in_part(), given->observed, given->surface, setup_.own_stamps());
   given->observed.reach = reach_;
   if (foreign_fraction(given->observed) > kForeign) expect_hidden_rows(*given);
   first_observed_ = given->observed;
@@ -185,8 +186,7 @@ void Loop::check_levers(const std::vector<bool>& selected) {
     check_feeds(setup_.program, selected, diagnostics_);
   }
   if (has(machine::Lever::passes)) {
-    simulate::refuse_rotary_motion(setup_.program.rotary.get(), setup_.program.text,
-                                   "levers names \"passes\", which cuts a run twice", diagnostics_);
+    kinematics::refuse_rotary_motion(setup_.program, "levers names \"passes\", which cuts a run twice", diagnostics_);
     check_passes(setup_.program, selected, diagnostics_);
   }
   diagnostics_.throw_if_errors();
@@ -194,8 +194,8 @@ void Loop::check_levers(const std::vector<bool>& selected) {
 
 /// `version` is the active one.
 void Loop::begin_version(Version& version) {
-  version.path.emplace(setup_.program.moves, version.compensated, spacing_mm(), job_.machine.control.block_time_s,
-                       turning_moves(setup_.program));
+  version.path.emplace(setup_.program.moves_in_part(), version.compensated, spacing_mm(),
+                       job_.machine.control.block_time_s, turning_moves(setup_.program));
   version.sensitivity.emplace(*version.path);
   version.stiffness.assign(version.path->points().size(), 1.0);
   version.links = row_links(*version.path, kRowReach_mm);

@@ -40,7 +40,7 @@ std::optional<std::uint32_t> block_behind_collision(const machine::Job& job, con
   if (job.simulation.collisions == machine::Collisions::off) return std::nullopt;
   const nc::RepeatedText& text = *version.repeated;
   for (const simulate::Collision& c : simulate::find_collisions(job, version.program, blank)) {
-    std::size_t line = version.program.moves.moves[c.move].block;
+    std::size_t line = version.program.moves_in_part().moves[c.move].block;
     if (!text.added[line] || text.block_of_line[line] != nc::Emission::kNoBlock) continue;
     while (text.added[line]) ++line;
     return text.block_of_line[line];
@@ -58,16 +58,16 @@ std::unique_ptr<Version> Loop::version_with(const std::vector<PassRun>& runs, st
   while (!chosen.empty()) {
     auto out = std::make_unique<Version>();
     out->repeated = with_first_cuts(given, runs, chosen, first_cuts);
-    out->operations =
-        moved_ranges(simulate::as_lines(job_.operations, given.text, given.moves), out->repeated->block_of_line);
+    out->operations = moved_ranges(simulate::as_lines(job_.operations, given.text(), given.moves_in_part()),
+                                   out->repeated->block_of_line);
     machine::Job job = job_;
     job.operations = out->operations;
     Diagnostics repeated;  // the given program's
     out->program = simulate::simulate_motion(SourceText(job_.program, out->repeated->text), job, {}, repeated);
     std::uint32_t wrong = 0;
-    const auto moves = moves_in_repeated(given.moves, out->program.moves, *out->repeated, wrong);
+    const auto moves = moves_in_repeated(given.moves_in_part(), out->program.moves_in_part(), *out->repeated, wrong);
     if (!moves) {
-      warn_of_run(given.moves.moves[wrong].block, nc::to_string(nc::RunGap::modal), "not-repeatable");
+      warn_of_run(given.moves_in_part().moves[wrong].block, nc::to_string(nc::RunGap::modal), "not-repeatable");
       chosen = without_run_at(runs, chosen, wrong);
       continue;
     }
@@ -90,7 +90,7 @@ std::unique_ptr<Version> Loop::version_with(const std::vector<PassRun>& runs, st
 }
 
 void Loop::warn_of_run(std::uint32_t block, const std::string& why, const char* check) {
-  const nc::Program& text = setup_.program.text;
+  const nc::Program& text = setup_.program.text();
   diagnostics_.add(text.source.diagnostic(Severity::warning, text.blocks[block].offset,
                                           fmt::format("the cuts here are made once: the moves {}", why), check));
 }
@@ -98,12 +98,13 @@ void Loop::warn_of_run(std::uint32_t block, const std::string& why, const char* 
 /// Fills in what a version takes over from the given program, which is active. `moves`: one per move of the given
 /// program.
 void Loop::fill_moves(const std::vector<std::uint32_t>& moves, Version& out) const {
-  const std::size_t count = out.program.moves.moves.size();
+  const std::size_t count = out.program.moves_in_part().moves.size();
   out.moves = moves;
   out.compensated.assign(count, false);
   for (std::size_t m = 0; m < moves.size(); ++m) out.compensated[moves[m]] = now_->compensated[m];
   out.first_cuts.resize(count);
-  for (std::size_t m = 0; m < count; ++m) out.first_cuts[m] = out.repeated->added[out.program.moves.moves[m].block];
+  for (std::size_t m = 0; m < count; ++m)
+    out.first_cuts[m] = out.repeated->added[out.program.moves_in_part().moves[m].block];
   out.stamps = setup_.target.stamps;
   if (setup_.own_target())
     for (simulate::PathFraction& stamp : out.stamps) stamp.move = moves[stamp.move];

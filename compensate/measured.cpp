@@ -182,18 +182,20 @@ machine::Job softened(const machine::Job& job, double scale) {
 }
 
 MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const std::vector<MeasuredPoint>& points,
-                         const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress) {
+                         const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress,
+                         const simulate::Predictor& predictor) {
   Diagnostics repeated;
   const simulate::Setup setup =
-      simulate::set_up(job, {.program = program},
+      simulate::set_up(job, {.program = program, .predictor = predictor},
                        {.program = program.empty() ? repeated : diagnostics, .original = repeated, .target = repeated});
 
   MeasuredFit out;
   std::optional<Neighbours> near;
   std::vector<double> measured;
   const auto predicted_at = [&](double scale) {
-    const auto prediction = simulate::predict_surface(softened(job, scale), setup.target, setup.program, progress,
-                                                      fmt::format("measured points, deflection x {:.3f}", scale));
+    const auto prediction =
+        simulate::predict_surface(setup.predictor, softened(job, scale), setup.target, setup.program, progress,
+                                  fmt::format("measured points, deflection x {:.3f}", scale));
     ++out.predictions;
     if (!near) {
       near.emplace(prediction.surface, points, 1.5 * job.simulation.voxel_mm);

@@ -37,6 +37,7 @@ machine::Job softened(const machine::Job& job, double scale);
 /// fewer than three points lie on the job's surface, their predicted error hardly depends on the deflection, or the
 /// standard error of the scale is over a quarter of it.
 MeasuredFit fit_measured(const machine::Job& job, const std::string& path, const std::vector<MeasuredPoint>& points,
-                         const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress);
+                         const std::string& program, Diagnostics& diagnostics, const simulate::Progress& progress,
+                         const simulate::Predictor& predictor = simulate::predict);
 
 }  // namespace camber::compensate

@@ -16,7 +16,7 @@ constexpr double kSame_mm = 1e-6;
 
 /// Time from the first to the last tooth passing of each move.
 std::vector<double> times_of(const simulate::SimulatedProgram& program) {
-  std::vector<double> out(program.moves.moves.size(), 0.0);
+  std::vector<double> out(program.moves_in_part().moves.size(), 0.0);
   const auto& stamps = program.path.stamps;
   for (std::size_t i = 1; i < stamps.size(); ++i)
     if (!stamps[i].first) out[stamps[i].move] += stamps[i].t_s - stamps[i - 1].t_s;
@@ -47,22 +47,22 @@ bool same_move(const nc::Interpretation& a, const nc::Move& m, const nc::Interpr
 
 void check_passes(const simulate::SimulatedProgram& program, const std::vector<bool>& selected,
                   Diagnostics& diagnostics) {
-  const auto runs = nc::cut_runs(program.text, program.moves, selected);
+  const auto runs = nc::cut_runs(program.text(), program.moves_in_part(), selected);
   const auto gap = [](const nc::CutRun& r) { return r.why_not != nc::RunGap::none; };
   const auto first = std::ranges::find_if(runs, gap);
   if (first == runs.end()) return;
   const auto count = static_cast<std::size_t>(std::ranges::count_if(runs, gap));
   const bool none = count == runs.size();
-  const std::size_t offset = program.text.blocks[first->first_block].offset;
+  const std::size_t offset = program.text().blocks[first->first_block].offset;
   if (none)
-    diagnostics.add(program.text.source.diagnostic(
+    diagnostics.add(program.text().source.diagnostic(
         Severity::error, offset,
         fmt::format("levers names \"passes\", but none of the cuts to compensate can be made twice: those from here on "
                     "{}; levers without \"passes\" were expected",
                     nc::to_string(first->why_not)),
         "lever-unusable"));
   else
-    diagnostics.add(program.text.source.diagnostic(
+    diagnostics.add(program.text().source.diagnostic(
         Severity::warning, offset,
         fmt::format("{} of {} runs of cuts between rapids cannot be made twice; the moves of the first, from here on, "
                     "{}",
@@ -75,8 +75,8 @@ std::vector<PassRun> pass_runs(const simulate::SimulatedProgram& given, const st
                                std::span<const double> left_mm) {
   std::vector<PassRun> out;
   const std::vector<double> times = times_of(given);
-  std::vector<std::size_t> run_of(given.moves.moves.size(), 0);
-  for (nc::CutRun& run : nc::cut_runs(given.text, given.moves, selected)) {
+  std::vector<std::size_t> run_of(given.moves_in_part().moves.size(), 0);
+  for (nc::CutRun& run : nc::cut_runs(given.text(), given.moves_in_part(), selected)) {
     if (run.why_not != nc::RunGap::none) continue;
     PassRun next{.run = std::move(run)};
     for (std::uint32_t m = next.run.first_move; m <= next.run.last_move; ++m) {
@@ -129,7 +129,7 @@ nc::RepeatedText with_first_cuts(const simulate::SimulatedProgram& given, std::s
     }
     cuts.push_back(std::move(cut));
   }
-  return nc::repeat_runs(given.text, given.moves, cuts);
+  return nc::repeat_runs(given.text(), given.moves_in_part(), cuts);
 }
 
 std::optional<std::vector<std::uint32_t>> moves_in_repeated(const nc::Interpretation& given,

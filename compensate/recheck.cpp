@@ -31,11 +31,11 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
   std::vector<bool> reach;
   const auto judge = [&](const Emitted* program, const std::string& what) {
     const auto& machined = program ? program->program : given.program;
-    auto prediction = simulate::predict_surface(other, target, machined, progress,
+    auto prediction = simulate::predict_surface(given.predictor, other, target, machined, progress,
                                                 fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
     Observed observed = observe(path, job, given.program, machined, program ? program->map : MoveMap(),
                                 prediction.surface, stamps, {}, made_by.first_cuts);
-    if (reach.empty()) reach = reach_of(path, given.program.moves, observed, prediction.surface, stamps);
+    if (reach.empty()) reach = reach_of(path, given.program.moves_in_part(), observed, prediction.surface, stamps);
     observed.reach = reach;
     const ErrorSplit split = split_error(path, observed, own);
     const PlainFigures plain = plain_figures(prediction.surface, prediction.total_error_mm, observed, job.compensation);
@@ -62,10 +62,10 @@ std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& gr
   machine::Job other = moved(job, group, unknown);
   if (emitted) other.operations = emitted->operations;
   Diagnostics repeated;
-  const auto& text = (emitted ? emitted->program : given.program).text.source;
+  const auto& text = (emitted ? emitted->program : given.program).text().source;
   const auto program = simulate::simulate_motion(text, other, {}, repeated);
   const auto prediction =
-      simulate::predict_surface(other, given.target, program, progress, "uncertainty: " + group.name);
+      simulate::predict_surface(given.predictor, other, given.target, program, progress, "uncertainty: " + group.name);
   std::vector<double> out;
   out.reserve(after.size());
   for (std::size_t i = 0; i < after.size(); ++i) out.push_back(prediction.surface[i].error_mm - after[i].error_mm);

@@ -20,7 +20,7 @@ void Trial::keep(simulate::Prediction prediction) {
 std::vector<bool> turning_moves(const simulate::SimulatedProgram& program) {
   std::vector<bool> out;
   if (const kinematics::PartPath* path = program.part_path())
-    for (std::uint32_t m = 0; m < program.moves.moves.size(); ++m) out.push_back(path->turn_rad(m) > 0);
+    for (std::uint32_t m = 0; m < program.moves_in_part().moves.size(); ++m) out.push_back(path->turn_rad(m) > 0);
   return out;
 }
 
@@ -43,21 +43,21 @@ std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& progra
 }
 
 TrialRunner::TrialRunner(const machine::Job& job, const simulate::Setup& given)
-    : job_(job), given_(given), decimals_(decimals_for(job.machine.control, given.program.text)) {}
+    : job_(job), given_(given), decimals_(decimals_for(job.machine.control, given.program.text())) {}
 
 std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const std::vector<bool>& splits,
                                                  const std::vector<bool>& compensated) const {
   auto out = std::make_shared<Emitted>();
   out->splits = splits;
-  out->emission = nc::emit_edits(given_.program.text, given_.program.text_moves(),
+  out->emission = nc::emit_edits(given_.program.text(), given_.program.moves_in_program(),
                                  edits_of_text(given_.program, path.edits(splits, kViaTolerance_mm)), decimals_);
   Diagnostics repeated;  // the emitted program's warnings are the given one's
   machine::Job job = job_;
   out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
   job.operations = out->operations;
   out->program = simulate::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
-  out->map = MoveMap(given_.program.moves, out->program.moves, out->emission.block_of_line);
-  out->quality = path_quality(given_.program.moves, compensated, out->program.moves, out->map,
+  out->map = MoveMap(given_.program.moves_in_part(), out->program.moves_in_part(), out->emission.block_of_line);
+  out->quality = path_quality(given_.program.moves_in_part(), compensated, out->program.moves_in_part(), out->map,
                               job_.machine.control.block_time_s, job_.compensation.max_angle_growth_rad);
   return out;
 }
@@ -65,7 +65,7 @@ std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const st
 nc::Emission TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
   nc::EmitOptions options = decimals_;
   options.header_comment = header;
-  return nc::emit_edits(given_.program.text, given_.program.text_moves(),
+  return nc::emit_edits(given_.program.text(), given_.program.moves_in_program(),
                         edits_of_text(given_.program, path.edits(splits, kViaTolerance_mm)), options);
 }
 
@@ -73,7 +73,7 @@ simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& prog
                                           const std::function<void(double)>& progress) const {
   simulate::PredictOptions options;
   options.progress = progress;
-  return simulate::predict(job_, given_.target, program, options);
+  return given_.predictor(job_, given_.target, program, options);
 }
 
 Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,

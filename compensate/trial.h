@@ -7,7 +7,7 @@
 
 #include "compensate/attribution.h"
 #include "compensate/path_quality.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "nc/emit.h"
 #include "simulate/operations.h"
 #include "simulate/setup.h"
@@ -47,7 +47,7 @@ std::vector<bool> turning_moves(const simulate::SimulatedProgram& program);
 /// Edits of a program's moves in the coordinates of its text, with the angles of the rotary axes as they are.
 std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& program, std::vector<nc::MoveEdit> edits);
 
-using feedmodel::decimals_for;
+using kinematics::decimals_for;
 using simulate::moved_ranges;
 
 /// Runs trials. Everything passed must outlive the object.

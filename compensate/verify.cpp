@@ -192,7 +192,7 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
   simulate::check_clearance(job, setup, diagnostics);
   diagnostics.throw_if_errors();
   const simulate::Prediction p =
-      simulate::predict_surface(job, setup.target, setup.program, progress, "the emitted program");
+      simulate::predict_surface(setup.predictor, job, setup.target, setup.program, progress, "the emitted program");
   Verification out;
   out.doubts = simulate::doubts(job, setup.program, p);
   if (simulate::beyond_model(p)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
@@ -203,7 +203,7 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
   out.depth = depth_of(p.surface, out.reference, p.not_judged_mm2, out.depth_limit_um);
   if (out.depth.stamp >= 0) {
     const auto& stamp = setup.program.path.stamps[static_cast<std::size_t>(out.depth.stamp)];
-    const std::size_t line = setup.program.moves.moves[stamp.move].block + std::size_t{1};
+    const std::size_t line = setup.program.moves_in_part().moves[stamp.move].block + std::size_t{1};
     out.depth.line = {line, line};
   }
   out.within_part = out.depth.gouge_depth_p999_um <= out.depth_limit_um;

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "removal/tile_size.h"
 
 namespace camber::copymill {
@@ -58,7 +58,7 @@ Runner::Runner(const machine::Job& job, const CopyOptions& options, removal::Sto
       options_(options),
       stock_(stock),
       motion_(job.machine),
-      dialect_(feedmodel::dialect_of(job.machine.control.kind)),
+      dialect_(kinematics::dialect_of(job.machine.control.kind)),
       writer_(nc::program_writer(dialect_, {.title = "COPY MILLING", .coolant = options.coolant})),
       piece_options_{.tolerance_mm = options.tolerance_mm},
       clear_height_(stock, smallest_diameter_mm(job)) {

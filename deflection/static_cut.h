@@ -40,12 +40,13 @@ class StaticCut {
  public:
   StaticCut(removal::Stock& stock, const removal::Stock& blank, const removal::EnvelopeGrid& envelope,
             const ToothPassModel& model, std::span<const removal::Stamp> stamps, std::int32_t first_id,
-            const SettleOptions& options, const RunOutOffsets& run_out, std::size_t different_teeth = 1)
+            const SettleOptions& options, const RunOutOffsets& run_out, std::size_t different_teeth = 1,
+            const removal::KnownRun* known = nullptr)
       : stamps_(stamps),
         options_(options),
         run_out_(run_out),
         envelope_(envelope),
-        engager_(stock, blank, envelope, stamps, first_id),
+        engager_(stock, blank, envelope, stamps, first_id, known),
         equilibrium_(envelope, model),
         pace_(different_teeth, options.longest_gap) {}
 

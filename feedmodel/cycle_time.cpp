@@ -8,11 +8,11 @@
 
 #include "base/units.h"
 #include "feedmodel/axis_places.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/motion_times.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/spindle_start.h"
 #include "feedmodel/yan_shirase.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"
 
 namespace camber::feedmodel {
@@ -40,11 +40,11 @@ class CycleClock {
   CycleClock(const nc::Interpretation& program, const machine::Machine& machine)
       : program_(program),
         machine_(machine),
-        places_(machine, has_rotary_motion(program, machine)),
+        places_(machine, kinematics::has_rotary_motion(program, machine)),
         rapid_speed_(rapid_speeds_mm_per_s(machine)),
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)) {
     const bool clamps = std::ranges::any_of(machine.rotary, [](const machine::RotaryAxis& a) { return a.clamp_s > 0; });
-    if (clamps && has_rotary_motion(program, machine)) joints_.emplace(machine, program);
+    if (clamps && kinematics::has_rotary_motion(program, machine)) joints_.emplace(machine, program);
   }
 
   CycleTime run() {

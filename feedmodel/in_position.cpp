@@ -32,7 +32,7 @@ class LinearFollower {
 class JointFollower {
  public:
   JointFollower(const machine::Machine& machine, const Segment& segment, const SegmentMotion& motion, double from_s,
-                const JointMap& map)
+                const kinematics::JointMap& map)
       : segment_(segment), motion_(motion), map_(map), end_(at(motion.duration_s)), axes_(machine, at(from_s)) {}
   void step(double t_s) { now_ = axes_(at(t_s)); }
   double off() const {
@@ -41,11 +41,11 @@ class JointFollower {
   }
 
  private:
-  kinematics::Joints at(double t_s) const { return map_.joints(motion_.pose_at(segment_, t_s), *segment_.turn); }
+  kinematics::Joints at(double t_s) const { return joints_of(map_, motion_.pose_at(segment_, t_s), *segment_.turn); }
 
   const Segment& segment_;
   const SegmentMotion& motion_;
-  const JointMap& map_;
+  const kinematics::JointMap& map_;
   kinematics::Joints end_, now_;
   JointAxes axes_;
 };
@@ -64,7 +64,7 @@ double wait_of(Follower follower, double from_s, double end_s, double period_s, 
 }  // namespace
 
 double in_position_wait_s(const machine::Machine& machine, const Segment& segment, const SegmentMotion& motion,
-                          const JointMap* map) {
+                          const kinematics::JointMap* map) {
   const double width_mm = machine.control.in_position_mm;
   if (std::isinf(width_mm)) return 0;
   machine::Machine m = machine;

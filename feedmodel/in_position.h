@@ -1,7 +1,7 @@
 #pragma once
 // In-position wait: the time that a control waits at a stop until its axes are there.
-#include "feedmodel/joint_map.h"
 #include "feedmodel/segment_motion.h"
+#include "kinematics/joint_map.h"
 #include "machine/machine.h"
 
 namespace camber::feedmodel {
@@ -11,6 +11,6 @@ namespace camber::feedmodel {
 /// before it. With `map`, of a program with rotary motion, the joints, of which rotary ones have the same number of
 /// degrees. 0 where the control does not wait or the axes have no lag.
 double in_position_wait_s(const machine::Machine& machine, const Segment& segment, const SegmentMotion& motion,
-                          const JointMap* map = nullptr);
+                          const kinematics::JointMap* map = nullptr);
 
 }  // namespace camber::feedmodel

@@ -28,8 +28,8 @@ void for_each_axis(const Use& use) {
   }
 }
 
-AxisValues joints_at(const Segment& segment, double s, const JointMap& map) {
-  const kinematics::Joints q = map.joints(pose_at(segment, s), *segment.turn);
+AxisValues joints_at(const Segment& segment, double s, const kinematics::JointMap& map) {
+  const kinematics::Joints q = joints_of(map, pose_at(segment, s), *segment.turn);
   return {q.linear_mm, q.rotary_rad};
 }
 
@@ -39,7 +39,7 @@ struct Derivatives {
   double half = 0;
 };
 
-Derivatives derivatives(const Segment& segment, double from_s, double to_s, const JointMap& map) {
+Derivatives derivatives(const Segment& segment, double from_s, double to_s, const kinematics::JointMap& map) {
   const double s = (from_s + to_s) / 2, h = std::max((to_s - from_s) / 2, kLeastStep);
   const AxisValues before = joints_at(segment, s - h, map), at = joints_at(segment, s, map),
                    after = joints_at(segment, s + h, map);
@@ -106,11 +106,11 @@ double limit_along_joints(const AxisValues& rate, const AxisValues& limits) {
   return slowest > 0 ? 1.0 / slowest : machine::kNoLimit;
 }
 
-AxisValues joint_rates(const Segment& segment, double s, const JointMap& map) {
+AxisValues joint_rates(const Segment& segment, double s, const kinematics::JointMap& map) {
   return (joints_at(segment, s + kLeastStep, map) - joints_at(segment, s - kLeastStep, map)) * (0.5 / kLeastStep);
 }
 
-void hand_out_within_limits(const Segment& segment, const JointMap& map, const JointLimits& limits,
+void hand_out_within_limits(const Segment& segment, const kinematics::JointMap& map, const JointLimits& limits,
                             const std::function<void(const Segment&)>& sink) {
   const int pieces = pieces_of(segment);
   for (int i = 0; i < pieces; ++i) {

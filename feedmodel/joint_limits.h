@@ -2,8 +2,8 @@
 // Limits of a path from its joints: no joint may be faster, or accelerated more, than its axis allows.
 #include <functional>
 
-#include "feedmodel/joint_map.h"
 #include "feedmodel/segment.h"
+#include "kinematics/joint_map.h"
 #include "machine/machine.h"
 
 namespace camber::feedmodel {
@@ -24,12 +24,12 @@ JointLimits rapid_limits(const machine::Machine& machine);
 double limit_along_joints(const AxisValues& rate, const AxisValues& limits);
 
 /// dq/ds at the length s, by central difference.
-AxisValues joint_rates(const Segment& segment, double s, const JointMap& map);
+AxisValues joint_rates(const Segment& segment, double s, const kinematics::JointMap& map);
 
 /// Hands the segment out in pieces, each with the limits of the joints in it:
 ///     |q_i'| v <= V_i,        |q_i''| v^2 <= kTurningFraction A_i,        |q_i'| a <= A_i - |q_i''| v^2,
 /// v the limit of the piece, the segment's own included. A piece turns by at most a degree. Requires segment.turn.
-void hand_out_within_limits(const Segment& segment, const JointMap& map, const JointLimits& limits,
+void hand_out_within_limits(const Segment& segment, const kinematics::JointMap& map, const JointLimits& limits,
                             const std::function<void(const Segment&)>& sink);
 
 }  // namespace camber::feedmodel

@@ -3,9 +3,9 @@
 #include <cassert>
 
 #include "feedmodel/axis_places.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
 #include "feedmodel/rapid.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -25,7 +25,7 @@ void add_plan(const MotionPlan& plan, MotionTimes& out) {
 
 void count_positionings(const nc::Interpretation& program, const machine::Machine& machine, MotionTimes& out) {
   const Vec3 speed = rapid_speeds_mm_per_s(machine), acceleration = rapid_accelerations_mm_per_s2(machine);
-  AxisPlaces places(machine, has_rotary_motion(program, machine));
+  AxisPlaces places(machine, kinematics::has_rotary_motion(program, machine));
   for (const nc::Move& move : program.moves) {
     const AxisPlaces::Way way = places.pass(move);
     out.unplaced_moves += !way.complete;

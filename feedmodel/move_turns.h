@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <memory>
 
-#include "feedmodel/joint_map.h"
 #include "feedmodel/turn.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"
 
 namespace camber::feedmodel {
@@ -24,7 +24,7 @@ class MoveTurns {
   std::shared_ptr<const Turn> turn_along(double length) const;
   /// The axes rest where the move of the last at() begins, or ends.
   std::shared_ptr<const Turn> rest(bool at_end) const;
-  const JointMap& map() const { return map_; }
+  const kinematics::JointMap& map() const { return map_; }
 
  private:
   Turn base() const;
@@ -32,7 +32,7 @@ class MoveTurns {
   const nc::Interpretation& program_;
   const machine::Machine& machine_;
   kinematics::ProgramJoints joints_;
-  JointMap map_;
+  kinematics::JointMap map_;
   kinematics::MoveJoints now_;
 };
 

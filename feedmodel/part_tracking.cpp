@@ -38,4 +38,14 @@ PathPlace closest_on_part(const kinematics::PartPath& path, const nc::Interpreta
   return place;
 }
 
+FeedSummary predict_on_part(const nc::Interpretation& moves_of_axes, const machine::Machine& machine,
+                            const PartSink& sink) {
+  PartSamples on_part;
+  return predict_joints(moves_of_axes, machine,
+                        [&](std::span<const TimedSample> samples, std::span<const JointSample> joints) {
+                          on_part.take(samples, joints);
+                          sink(on_part);
+                        });
+}
+
 }  // namespace camber::feedmodel

@@ -1,5 +1,6 @@
 #pragma once
 // Samples of programs with rotary motion in the part's frame: poses of the tool, and their places on the path.
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,11 @@ class PartSamples {
   std::optional<Vec3> last_tip_mm_;
   double last_s_ = 0;
 };
+
+/// predict_joints in the part's frame, run by run. `moves_of_axes`: of a kinematics::MachineProgram that turns.
+using PartSink = std::function<void(const PartSamples&)>;
+FeedSummary predict_on_part(const nc::Interpretation& moves_of_axes, const machine::Machine& machine,
+                            const PartSink& sink);
 
 /// Does what closest_on_move does, for a tool and the angles of its axes, of which 1 rad counts as PartPath::kLever_mm:
 /// the place where a tip that stands still is turned by other blocks. `in_part`: path.moves_in_part().

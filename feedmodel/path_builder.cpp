@@ -143,8 +143,8 @@ class Builder {
         rapid_velocity_(rapid_speeds_mm_per_s(machine)),
         rapid_acceleration_(rapid_accelerations_mm_per_s2(machine)),
         feed_factor_(machine.cycle.feed_override_percent / 100.0),
-        places_(machine, has_rotary_motion(program, machine)) {
-    if (has_rotary_motion(program, machine)) turns_.emplace(program, machine);
+        places_(machine, kinematics::has_rotary_motion(program, machine)) {
+    if (kinematics::has_rotary_motion(program, machine)) turns_.emplace(program, machine);
   }
 
   void run() {

@@ -8,11 +8,11 @@
 
 #include "base/stage.h"
 #include "feedmodel/in_position.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/modes.h"
 #include "feedmodel/overlap.h"
 #include "feedmodel/path_builder.h"
 #include "feedmodel/rapid.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -82,7 +82,7 @@ SegmentMotion motion_in_row(const PlanRow& row, const SegmentTime& time, double 
 class Planner {
  public:
   Planner(const nc::Interpretation& program, const machine::Machine& machine) : program_(program), machine_(machine) {
-    if (has_rotary_motion(program, machine)) map_.emplace(machine, program);
+    if (kinematics::has_rotary_motion(program, machine)) map_.emplace(machine, program);
     for (std::size_t mode = 0; mode <= machine.modes.size(); ++mode) {
       laws_.push_back(acceleration_law_of(machine, mode));
       delay_s_.push_back(delay_s(machine, mode));
@@ -347,7 +347,7 @@ class Planner {
   const machine::Machine& machine_;
   std::vector<machine::AccelerationTimes> laws_;  ///< one per mode
   std::vector<double> delay_s_;                   ///< one per mode
-  std::optional<JointMap> map_;                   // of a program with rotary motion
+  std::optional<kinematics::JointMap> map_;       // of a program with rotary motion
   std::vector<Stretch> stretches_;                // in order
   std::vector<Stop> stops_;                       // in order
   struct LastMotion {

@@ -5,10 +5,10 @@
 
 #include "base/cancel.h"
 #include "feedmodel/axes.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
 #include "feedmodel/summary.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -99,7 +99,7 @@ class Sampler {
 }  // namespace
 
 FeedSummary predict_feed(const nc::Interpretation& program, const machine::Machine& machine, const SampleSink& sink) {
-  if (has_rotary_motion(program, machine))
+  if (kinematics::has_rotary_motion(program, machine))
     return predict_joints(program, machine,
                           [&](std::span<const TimedSample> samples, std::span<const JointSample>) { sink(samples); });
   FeedSum sum(program);

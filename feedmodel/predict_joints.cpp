@@ -6,10 +6,10 @@
 #include "base/cancel.h"
 #include "base/units.h"
 #include "feedmodel/axes.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
 #include "feedmodel/summary.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::feedmodel {
 namespace {
@@ -30,7 +30,7 @@ class JointSampler {
     turn_ = segment.turn;
     move_ = segment.move;
     cutting_ = segment.cutting;
-    start_at(map_.joints(motion.pose_at(segment, 0), *turn_));
+    start_at(joints_of(map_, motion.pose_at(segment, 0), *turn_));
     const double moves_until_s = time.start_s + motion.duration_s, end_s = std::min(time.end_s(), next_start_s);
     for (double t = time_of(next_); t < end_s; t = time_of(++next_)) {
       ProgramPose pose = motion.pose_at(segment, t - time.start_s);
@@ -38,7 +38,7 @@ class JointSampler {
       put(t, pose, t < moves_until_s ? segment.feed_command_mm_per_s : 0.0);
     }
     end_ = motion.pose_at(segment, motion.duration_s);
-    end_joints_ = map_.joints(end_, *turn_);
+    end_joints_ = joints_of(map_, end_, *turn_);
     end_s_ = time.end_s();
     previous_.reset();
     if (next_start_s < moves_until_s) previous_ = {segment, motion, time.start_s};
@@ -86,7 +86,7 @@ class JointSampler {
   }
 
   void put(double t_s, const ProgramPose& pose, double feed_mm_per_s) {
-    const kinematics::Joints command = map_.joints(pose, *turn_), actual = (*axes_)(command),
+    const kinematics::Joints command = joints_of(map_, pose, *turn_), actual = (*axes_)(command),
                              velocity = axes_->velocity_per_s();
     samples_.push_back({.t_s = t_s,
                         .command_mm = command.linear_mm,
@@ -97,8 +97,8 @@ class JointSampler {
     JointSample joints{.command_rad = command.rotary_rad,
                        .position_rad = actual.rotary_rad,
                        .velocity_rad_per_s = velocity.rotary_rad,
-                       .command_tool = map_.tool(command, *turn_),
-                       .tool = map_.tool(actual, *turn_)};
+                       .command_tool = map_.tool(command, turn_->tool_length_mm),
+                       .tool = map_.tool(actual, turn_->tool_length_mm)};
     joints.feed_mm_per_s = feed_of(velocity, joints.tool.tip_mm);
     const PoseContour::Error error = contour_(joints.command_tool, joints.tool);
     if (cutting_) errors_.add(error);
@@ -131,7 +131,7 @@ class JointSampler {
   }
 
   const machine::Machine& machine_;
-  JointMap map_;
+  kinematics::JointMap map_;
   double period_s_;
   const JointSampleSink& sink_;
   std::optional<JointAxes> axes_;

@@ -2,6 +2,7 @@
 // Rotary motion along one segment.
 #include "base/geometry.h"
 #include "kinematics/feed_meaning.h"
+#include "kinematics/joint_map.h"
 
 namespace camber::feedmodel {
 
@@ -27,6 +28,10 @@ struct Turn {
   bool turns() const { return !rate.isZero(0) || !bend.isZero(0); }
   bool bent() const { return !bend.isZero(0) || !bend_mm.isZero(0); }
 };
+
+inline kinematics::Joints joints_of(const kinematics::JointMap& map, const ProgramPose& pose, const Turn& turn) {
+  return map.joints(pose.xyz_mm, pose.rotary_rad, turn.tip_control, turn.tool_length_mm);
+}
 
 /// Requires segment.turn.
 ProgramPose pose_at(const Segment& segment, double s);

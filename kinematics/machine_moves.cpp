@@ -208,9 +208,7 @@ class Placer {
 
   /// What a program without tool-centre-point control names for these positions of the axes.
   Vec3 named_mm(const nc::Move& move, const Vec3& linear_mm) const {
-    const machine::Kinematics& k = machine_.kinematics;
-    return linear_mm - program_.state_of(move).tool_length_mm.value_or(0) * k.tool_axis.normalized() +
-           k.gauge_point_mm + program_.machine_origin_mm.value_or(Vec3::Zero());
+    return map_.named_mm(linear_mm, program_.state_of(move).tool_length_mm.value_or(0));
   }
 
   /// The linear axes for what such a program names.
@@ -232,6 +230,7 @@ class Placer {
 
   nc::Interpretation& program_;
   const machine::Machine& machine_;
+  JointMap map_{machine_, program_};
   ProgramJoints joints_{machine_, program_, MissingOffset::zero};
   MoveJoints now_;
   std::vector<LinearEnds> ends_;  ///< of each move

@@ -28,12 +28,7 @@ Eigen::Isometry3d part_from_text(const nc::Interpretation& text, const nc::Move&
 
 }  // namespace
 
-PartPath::PartPath(const machine::Machine& machine, const nc::Interpretation& text)
-    : text_(text),
-      chain_(machine),
-      tool_axis_(machine.kinematics.tool_axis.normalized()),
-      gauge_mm_(machine.kinematics.gauge_point_mm),
-      origin_mm_(text.machine_origin_mm.value_or(Vec3::Zero())) {
+PartPath::PartPath(const machine::Machine& machine, const nc::Interpretation& text) : text_(text), map_(machine, text) {
   at_.resize(text.moves.size());
   auto target = text.machine_targets.begin();
   for (ProgramJoints program(machine, text); !program.done();) {
@@ -57,11 +52,6 @@ PartPath::PartPath(const machine::Machine& machine, const nc::Interpretation& te
   find_bent_arcs();
 }
 
-/// Machine coordinates, where X Y Z of the text belong to the linear axes.
-Vec3 PartPath::linear_of_axes(const Vec3& text_mm, double tool_length_mm) const {
-  return text_mm - origin_mm_ + tool_length_mm * tool_axis_ - gauge_mm_;
-}
-
 Joints PartPath::joints_at(std::uint32_t move, double u) const {
   const At& at = at_[move];
   if (u >= 1 || !at.start_known) return at.end;
@@ -70,23 +60,21 @@ Joints PartPath::joints_at(std::uint32_t move, double u) const {
   out.rotary_rad = at.start.rotary_rad + u * (at.end.rotary_rad - at.start.rotary_rad);
   out.linear_mm = text_.moves[move].arc == nc::Move::kNoArc
                       ? Vec3(at.start.linear_mm + u * (at.end.linear_mm - at.start.linear_mm))
-                      : linear_of_axes(nc::point_at(text_, text_.moves[move], u), at.tool_length_mm);
+                      : map_.linear_of_axes_mm(nc::point_at(text_, text_.moves[move], u), at.tool_length_mm);
   return out;
 }
 
 ToolPose PartPath::pose_at(std::uint32_t move, double u) const {
   const At& at = at_[move];
   if (!at.follows_tip || !at.end_known) {
-    ToolPose pose = chain_.pose(joints_at(move, u), at.tool_length_mm);
-    pose.tip_mm += origin_mm_;
-    return pose;
+    return map_.tool(joints_at(move, u), at.tool_length_mm);
   }
   if (!at.start_known) u = 1;
   const Vec3 angles =
       u >= 1 ? at.end.rotary_rad : Vec3(at.start.rotary_rad + u * (at.end.rotary_rad - at.start.rotary_rad));
-  ToolPose pose = chain_.pose({Vec3::Zero(), angles}, at.tool_length_mm);
+  ToolPose pose = map_.chain().pose({Vec3::Zero(), angles}, at.tool_length_mm);
   const nc::Move& m = text_.moves[move];
-  pose.tip_mm = part_from_text(text_, m, chain_, at.end.rotary_rad) * nc::point_at(text_, m, u);
+  pose.tip_mm = part_from_text(text_, m, map_.chain(), at.end.rotary_rad) * nc::point_at(text_, m, u);
   return pose;
 }
 
@@ -115,8 +103,7 @@ double PartPath::nearest_fraction(std::uint32_t move, const Joints& joints) cons
     // Straight in X Y Z of the text.
     const Vec3 from = at.follows_tip ? m.start_mm : at.start.linear_mm,
                to = at.follows_tip ? m.end_mm : at.end.linear_mm,
-               is =
-                   at.follows_tip ? Vec3(chain_.pose(joints, at.tool_length_mm).tip_mm + origin_mm_) : joints.linear_mm;
+               is = at.follows_tip ? map_.tool(joints, at.tool_length_mm).tip_mm : joints.linear_mm;
     along += (is - from).dot(to - from);
     square += (to - from).squaredNorm();
   }
@@ -133,10 +120,10 @@ std::optional<Vec3> PartPath::text_mm(std::uint32_t move, const Vec3& tip_mm) co
   if (!at.end_known) return std::nullopt;
   const nc::Move& m = text_.moves[move];
   if (at.follows_tip || text_.state_of(m).work_frame != nc::WorkFrame::machine)
-    return part_from_text(text_, m, chain_, at.end.rotary_rad).inverse() * tip_mm;
-  const auto linear = chain_.linear_mm(tip_mm - origin_mm_, at.end.rotary_rad, at.tool_length_mm);
+    return part_from_text(text_, m, map_.chain(), at.end.rotary_rad).inverse() * tip_mm;
+  const auto linear = map_.linear_of_tip_mm(tip_mm, at.end.rotary_rad, at.tool_length_mm);
   if (!linear) return std::nullopt;
-  return Vec3(*linear - at.tool_length_mm * tool_axis_ + gauge_mm_ + origin_mm_);
+  return map_.named_mm(*linear, at.tool_length_mm);
 }
 
 /// Nothing where it is no arc there.
@@ -144,7 +131,7 @@ std::optional<nc::Arc> PartPath::arc_in_part(std::uint32_t move) const {
   const At& at = at_[move];
   nc::Arc arc = text_.arcs[text_.moves[move].arc];
   if (at.follows_tip) {
-    const Eigen::Isometry3d map = part_from_text(text_, text_.moves[move], chain_, at.end.rotary_rad);
+    const Eigen::Isometry3d map = part_from_text(text_, text_.moves[move], map_.chain(), at.end.rotary_rad);
     arc.center_mm = map * arc.center_mm;
     arc.normal = map.linear() * arc.normal;
     return arc;
@@ -152,8 +139,8 @@ std::optional<nc::Arc> PartPath::arc_in_part(std::uint32_t move) const {
   if (at.turn_rad > 0) return std::nullopt;
   Mat3 turn;  // part from axes
   const Joints zero{Vec3::Zero(), at.end.rotary_rad};
-  const Vec3 tip = chain_.pose(zero, 0).tip_mm;
-  for (int i = 0; i < 3; ++i) turn.col(i) = chain_.pose({Vec3::Unit(i), zero.rotary_rad}, 0).tip_mm - tip;
+  const Vec3 tip = map_.chain().pose(zero, 0).tip_mm;
+  for (int i = 0; i < 3; ++i) turn.col(i) = map_.chain().pose({Vec3::Unit(i), zero.rotary_rad}, 0).tip_mm - tip;
   constexpr double kSquare = 1e-9;
   if ((turn.transpose() * turn - Mat3::Identity()).norm() > kSquare || turn.determinant() < 0) return std::nullopt;
   arc.center_mm = pose_at(move, 0).tip_mm + turn * (arc.center_mm - text_.moves[move].start_mm);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/tool_pose.h"
-#include "kinematics/chain.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/joints.h"
 #include "machine/machine.h"
 #include "nc/move.h"
@@ -19,7 +19,8 @@ namespace camber::kinematics {
 
 class PartPath {
  public:
-  /// `text`: in the coordinates of the program, with lines as the machine runs them (place_lines); must outlive this.
+  /// `text`: in the coordinates of the program, with lines as the machine runs them
+  /// (MachineProgram::moves_in_program); must outlive this.
   /// Requires machine.kinematics.given().
   PartPath(const machine::Machine& machine, const nc::Interpretation& text);
 
@@ -60,14 +61,12 @@ class PartPath {
   };
 
   Joints joints_at(std::uint32_t move, double u) const;
-  Vec3 linear_of_axes(const Vec3& text_mm, double tool_length_mm) const;
   double measured_length_mm(std::uint32_t move) const;
   std::optional<nc::Arc> arc_in_part(std::uint32_t move) const;
   void find_bent_arcs();
 
   const nc::Interpretation& text_;
-  Chain chain_;
-  Vec3 tool_axis_, gauge_mm_, origin_mm_;
+  JointMap map_;
   std::vector<At> at_;
   std::vector<std::uint32_t> bent_arcs_;
 };

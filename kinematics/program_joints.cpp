@@ -26,12 +26,7 @@ Vec3 known_product(const Eigen::Matrix3d& m, const Vec3& p) {
 }  // namespace
 
 ProgramJoints::ProgramJoints(const machine::Machine& machine, const nc::Interpretation& moves, MissingOffset missing)
-    : moves_(moves),
-      chain_(machine),
-      tool_axis_(machine.kinematics.tool_axis.normalized()),
-      gauge_mm_(machine.kinematics.gauge_point_mm),
-      missing_(missing),
-      last_linear_mm_(kUnknown) {}
+    : moves_(moves), map_(machine, moves), missing_(missing), last_linear_mm_(kUnknown) {}
 
 std::optional<ProgramJoints::Offsets> ProgramJoints::offsets_of(const nc::Move& move) const {
   const std::optional<double>& length_mm = moves_.state_of(move).tool_length_mm;
@@ -55,24 +50,23 @@ std::optional<Vec3> ProgramJoints::linear_of(const nc::Move& move, const Vec3& t
   const nc::ModalState& state = moves_.state_of(move);
   const auto offsets = offsets_of(move);
   if (!offsets) return std::nullopt;
-  const Vec3 tip_in_machine_mm = tip_mm - offsets->origin_mm;
   if (state.tip_control != nc::TipControl::off || state.work_frame == nc::WorkFrame::tilted)
-    return chain_.linear_mm(tip_in_machine_mm, rotary_rad, offsets->tool_length_mm);
-  if (state.work_frame == nc::WorkFrame::machine)
-    return Vec3(tip_in_machine_mm + offsets->tool_length_mm * tool_axis_ - gauge_mm_);
+    return map_.linear_of_tip_mm(tip_mm, rotary_rad, offsets->tool_length_mm);
+  if (state.work_frame == nc::WorkFrame::machine) return map_.linear_of_axes_mm(tip_mm, offsets->tool_length_mm);
+  const Vec3 tip_in_machine_mm = tip_mm - offsets->origin_mm;
   const Vec3 origin_mm = moves_.frame_of(move).origin_mm - offsets->origin_mm;
-  const Vec3 in_part_mm = origin_mm + chain_.table_rotation(rotary_rad) * (tip_in_machine_mm - origin_mm);
-  return chain_.linear_mm(in_part_mm, rotary_rad, offsets->tool_length_mm);
+  const Vec3 in_part_mm = origin_mm + chain().table_rotation(rotary_rad) * (tip_in_machine_mm - origin_mm);
+  return chain().linear_mm(in_part_mm, rotary_rad, offsets->tool_length_mm);
 }
 
 /// The reverse. Requires what linear_of() needs.
 Vec3 ProgramJoints::tip_of(const nc::Move& move, const Joints& joints) const {
   const Offsets offsets = *offsets_of(move);
-  if (names_axes(move)) return joints.linear_mm - offsets.tool_length_mm * tool_axis_ + gauge_mm_ + offsets.origin_mm;
-  Vec3 tip_mm = chain_.pose(joints, offsets.tool_length_mm).tip_mm + offsets.origin_mm;
+  if (names_axes(move)) return map_.named_mm(joints.linear_mm, offsets.tool_length_mm);
+  const Vec3 tip_mm = map_.tool(joints, offsets.tool_length_mm).tip_mm;
   if (moves_.state_of(move).work_frame != nc::WorkFrame::dynamic) return tip_mm;
   const Vec3 origin_mm = moves_.frame_of(move).origin_mm;
-  return origin_mm + chain_.table_rotation(joints.rotary_rad).transpose() * (tip_mm - origin_mm);
+  return origin_mm + chain().table_rotation(joints.rotary_rad).transpose() * (tip_mm - origin_mm);
 }
 
 /// The point with its open programmed coordinates as the joints of the last move have them; NaN: not known.
@@ -107,8 +101,8 @@ void ProgramJoints::take_target(const nc::RotaryTarget& target, const nc::Move& 
   near.rotary_rad = now_.start_rad;
   const auto offsets = move.open_axes == 0 ? offsets_of(move) : std::nullopt;
   const Solution solution =
-      offsets ? chain_.solve({move.end_mm - offsets->origin_mm, target.end}, offsets->tool_length_mm, near)
-              : chain_.solve_tool_axis(target.end, near);
+      offsets ? chain().solve({move.end_mm - offsets->origin_mm, target.end}, offsets->tool_length_mm, near)
+              : chain().solve_tool_axis(target.end, near);
   now_.reach = solution.reach;
   if (solution.reach == Reach::reached || solution.reach == Reach::travel) now_.end_rad = solution.joints.rotary_rad;
 }
@@ -196,7 +190,7 @@ Joints ProgramJoints::at(double u) const {
 std::optional<ToolPose> ProgramJoints::pose_at(double u) const {
   const auto& length_mm = moves_.state_of(moves_.moves[index()]).tool_length_mm;
   if (!now_.linear_known || !length_mm) return std::nullopt;
-  return chain_.pose(at(u), *length_mm);
+  return chain().pose(at(u), *length_mm);
 }
 
 std::optional<Vec3> ProgramJoints::programmed_mm(const Vec3& linear_mm, const Vec3& rotary_rad) const {
@@ -205,29 +199,11 @@ std::optional<Vec3> ProgramJoints::programmed_mm(const Vec3& linear_mm, const Ve
   return tip_of(move, {linear_mm, rotary_rad});
 }
 
-void place_lines(nc::Interpretation& program, const machine::Machine& machine) {
-  constexpr double kSame_mm = 1e-6;
-  struct Placed {
-    std::size_t move;
-    Vec3 start_mm, end_mm;
-  };
-  std::vector<Placed> placed;
-  for (ProgramJoints joints(machine, program); !joints.done();) {
-    joints.next();
-    const nc::Move& move = program.moves[joints.index()];
-    if (move.kind == nc::MoveKind::dwell || move.arc != nc::Move::kNoArc || move.reference) continue;
-    const Vec3 start = joints.start_mm().value_or(move.start_mm), end = joints.end_mm().value_or(move.end_mm);
-    if ((start - move.start_mm).norm() > kSame_mm || (end - move.end_mm).norm() > kSame_mm)
-      placed.push_back({joints.index(), start, end});
-  }
-  for (const Placed& p : placed) program.moves[p.move].start_mm = p.start_mm, program.moves[p.move].end_mm = p.end_mm;
-}
-
 double ProgramJoints::tilt_error_rad() const {
   const nc::Move& move = moves_.moves[index()];
   if (!in_frame_ || moves_.state_of(move).work_frame != nc::WorkFrame::tilted) return 0;
   const Vec3 normal = moves_.frame_of(move).linear.col(2).normalized();
-  const Vec3 axis = chain_.pose({Vec3::Zero(), now_.end_rad}, 0).axis;
+  const Vec3 axis = chain().pose({Vec3::Zero(), now_.end_rad}, 0).axis;
   return std::atan2(normal.cross(axis).norm(), normal.dot(axis));
 }
 

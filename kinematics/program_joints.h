@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "kinematics/chain.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/joints.h"
 #include "nc/move.h"
 
@@ -71,7 +71,7 @@ class ProgramJoints {
   }
   /// At a move of X, Y or Z in a tilted frame: angle between the tool and Z of the frame at its end, rad; else 0.
   double tilt_error_rad() const;
-  const Chain& chain() const { return chain_; }
+  const Chain& chain() const { return map_.chain(); }
 
  private:
   /// Work offset and tool length of a move.
@@ -93,8 +93,7 @@ class ProgramJoints {
   void settle_start(const nc::Move& move);
 
   const nc::Interpretation& moves_;
-  Chain chain_;
-  Vec3 tool_axis_, gauge_mm_;
+  JointMap map_;
   MissingOffset missing_;
   std::size_t next_ = 0, next_target_ = 0, next_machine_target_ = 0;
   MoveJoints now_;
@@ -104,10 +103,5 @@ class ProgramJoints {
   Vec3 start_linear_mm_ = Vec3::Zero(), end_linear_mm_ = Vec3::Zero();  ///< NaN: not known
   Vec3 last_linear_mm_;                                                 ///< where the last move left the axes
 };
-
-/// Gives the lines of a program the starts and ends that the machine gives them, where it is known that they differ
-/// from those programmed (ProgramJoints::start_mm). Frames stay as they are (machine_moves.h: place_moves). Requires
-/// machine.kinematics.given().
-void place_lines(nc::Interpretation& program, const machine::Machine& machine);
 
 }  // namespace camber::kinematics

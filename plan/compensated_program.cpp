@@ -5,7 +5,7 @@
 #include "base/output_file.h"
 #include "base/temporary_folder.h"
 #include "compensate/compensate.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 
 namespace camber::plan {
 namespace {
@@ -17,7 +17,7 @@ CompensatedProgram kept(const std::string& text, const std::string& why) { retur
 CompensatedProgram compensated(const machine::Job& job, const std::string& stock_vdb, const std::string& text) {
   const TemporaryFolder folder;
   machine::Job of = job;
-  of.program = folder.path() + "/finish" + std::string(feedmodel::dialect_of(job.machine.control.kind).file_extension);
+  of.program = folder.path() + "/finish" + std::string(kinematics::dialect_of(job.machine.control.kind).file_extension);
   of.stock = {};
   of.stock.vdb = stock_vdb;
   write_file(of.program, text);

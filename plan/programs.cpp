@@ -9,8 +9,9 @@
 #include "base/temporary_folder.h"
 #include "base/units.h"
 #include "copymill/copy.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
+#include "kinematics/control_options.h"
+#include "kinematics/machine_program.h"
 #include "machine/number_key.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
@@ -97,10 +98,10 @@ void join_to(machine::CopyOperation& run, const machine::CopyOperation& other) {
 
 feedmodel::CycleTime cycle_time_of(const std::string& name, const std::string& text, const machine::Job& job) {
   Diagnostics ignored;
-  const nc::Program program = nc::read_program(SourceText(name, text), ignored);
-  const nc::Interpretation moves =
-      nc::interpret(program, feedmodel::interpreter_options(job.machine, job.inch), ignored);
-  return feedmodel::cycle_time(moves, job.machine);
+  const auto program =
+      kinematics::open_program(SourceText(name, text), job.machine,
+                               {.given = {.inch = job.inch}, .rotary = kinematics::RotaryWords::never}, ignored);
+  return feedmodel::cycle_time(program.commanded(), job.machine);
 }
 
 /// Line of an error's place: the number of the operation.
@@ -212,7 +213,7 @@ PlanProgram make_program(const PlanInput& input, const machine::Job& job, const 
   std::optional<SavedStocks> saved;
   if (input.compensate) saved.emplace(plan);
   const copymill::CopyResult copied = copy_what_fits(input, job, operations, saved, diagnostics);
-  const nc::Dialect& dialect = feedmodel::dialect_of(job.machine.control.kind);
+  const nc::Dialect& dialect = kinematics::dialect_of(job.machine.control.kind);
   nc::WrittenProgram written = copied.program;
   PlanProgram out;
   out.each.resize(count), out.times_s.resize(count), out.notes.resize(count);

@@ -11,8 +11,7 @@
 #include "base/units.h"
 #include "deflection/beam.h"
 #include "deflection/edge_force.h"
-#include "feedmodel/control_options.h"
-#include "kinematics/rotary_options.h"
+#include "kinematics/control_options.h"
 #include "nc/emit/number_style.h"
 #include "posture/frame_text.h"
 #include "posture/path_cost.h"
@@ -168,7 +167,7 @@ class Maker {
   /// Why one direction cannot be written as asked for; empty: it can.
   std::string frame_refused() const {
     if (!request_.options.indexed) return {};
-    const nc::Dialect& dialect = feedmodel::dialect_of(job_.machine.control.kind);
+    const nc::Dialect& dialect = kinematics::dialect_of(job_.machine.control.kind);
     const bool dynamic = request_.written == nc::OneDirection::dynamic;
     const nc::FiveAxisWords words = nc::five_axis_words(dialect);
     if (!words.writes(request_.written))
@@ -314,7 +313,7 @@ void Maker::write(Postured& out) const {
     divided.back().points.push_back(upright);
   }
   repath::Posted posted;
-  repath::PostWriter(program_, moves_, job_.machine, feedmodel::dialect_of(job_.machine.control.kind), options,
+  repath::PostWriter(program_, moves_, job_.machine, kinematics::dialect_of(job_.machine.control.kind), options,
                      rounding)
       .write(motions, divided, posted);
   out.text = std::move(posted.text);

@@ -59,7 +59,7 @@ std::vector<Triangle> faces_of(const removal::Stock& stock) {
 removal::StampPath before_block(const simulate::SimulatedProgram& program, std::uint32_t first) {
   removal::StampPath out = program.path;
   const auto end = std::find_if(out.stamps.begin(), out.stamps.end(), [&](const removal::Stamp& stamp) {
-    return program.moves.moves[stamp.move].block >= first;
+    return program.moves_in_part().moves[stamp.move].block >= first;
   });
   const auto count = static_cast<std::size_t>(end - out.stamps.begin());
   out.stamps.resize(count);

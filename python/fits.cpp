@@ -203,13 +203,10 @@ void add_fit_modes(py::module_& module) {
          const std::pair<double, double>& band_hz, const py::object& progress, bool strict, int threads) {
         FitModesResult result;
         call({progress, strict, threads}, [&](const camber::RunOptions& run) {
-          result = camber::fit_modes(response.string(),
-                                     {.tool = tool,
-                                      .direction = direction,
-                                      .modes = modes,
-                                      .from_hz = band_hz.first,
-                                      .to_hz = band_hz.second},
-                                     run);
+          result = camber::fit_modes(
+              response.string(),
+              {.tool = tool, .direction = direction, .modes = modes, .from_hz = band_hz.first, .to_hz = band_hz.second},
+              run);
         });
         return result;
       },

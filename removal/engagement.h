@@ -40,6 +40,8 @@ class Stage;
 
 namespace camber::removal {
 
+struct KnownRun;  // removal/known_run.h
+
 namespace upright {
 struct BlockPoints;  // removal/simd/upright_block_kernels.h
 struct BlockBounds;
@@ -168,9 +170,10 @@ class RigidEngager {
   /// `blank`: the stock before stamps[0]. Ids in the stock are first_id + index; smaller ids count as blank.
   /// `pitches`: largest number of tooth passings between a tooth and the one that left the surface of its chip; 1 for
   /// uniform teeth. With more, points whose chip would need the motion in up to `pitches` passings are reported too,
-  /// with a negative thickness. Everything passed must outlive the object.
+  /// with a negative thickness. `known`: of these stamps, where they are a known run (known_run.h). Everything passed
+  /// must outlive the object.
   RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
-               std::int32_t first_id, int pitches = 1);
+               std::int32_t first_id, int pitches = 1, const KnownRun* known = nullptr);
   ~RigidEngager();
 
   const EnvelopeBlocks& blocks() const;
@@ -215,9 +218,9 @@ class DeflectedEngager {
   static constexpr double kMaxDeflection_mm = 0.5;
 
   /// `blank`: the stock before stamps[0]. Ids in the stock are first_id + index; smaller ids count as blank. Requires
-  /// an envelope with patches; everything passed must outlive the object.
+  /// an envelope with patches; everything passed must outlive the object. `known`: see RigidEngager.
   DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
-                   std::int32_t first_id);
+                   std::int32_t first_id, const KnownRun* known = nullptr);
   ~DeflectedEngager();
 
   /// The deflections of the stamps before stamps[from], where they were cut elsewhere: rows of the last ones, one after

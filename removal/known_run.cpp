@@ -8,8 +8,6 @@
 namespace camber::removal {
 namespace {
 
-thread_local const KnownRun* the_run = nullptr;
-
 TipSteps steps_of(std::span<const Stamp> stamps, const Vec3& min_mm, const Vec3& max_mm,
                   std::span<const ListRange> kept) {
   const float step = tip_step_mm(max_mm - min_mm);
@@ -51,17 +49,9 @@ KnownRun::KnownRun(std::span<const Stamp> stamps_) : stamps(stamps_) {
   tips = std::make_shared<const TipSteps>(steps_of(stamps, min_mm, max_mm, std::span(&all, 1)));
 }
 
-KnownRunScope::KnownRunScope(const KnownRun& run) {
-  assert(!the_run);
-  the_run = &run;
+bool upright_run(std::span<const Stamp> stamps, const KnownRun* known) {
+  assert(!known || (known->stamps.data() == stamps.data() && known->stamps.size() == stamps.size()));
+  return known || all_upright(stamps);
 }
-KnownRunScope::~KnownRunScope() { the_run = nullptr; }
-
-const KnownRun* known_run(std::span<const Stamp> stamps) {
-  const bool same = the_run && the_run->stamps.data() == stamps.data() && the_run->stamps.size() == stamps.size();
-  return same ? the_run : nullptr;
-}
-
-bool upright_run(std::span<const Stamp> stamps) { return known_run(stamps) || all_upright(stamps); }
 
 }  // namespace camber::removal

@@ -27,19 +27,8 @@ struct KnownRun {
   explicit KnownRun(std::span<const Stamp> stamps);
 };
 
-/// While it lives, what this thread makes of these very stamps looks at `run` instead of going through all of them.
-/// Only one may live in a thread.
-class KnownRunScope {
- public:
-  explicit KnownRunScope(const KnownRun& run);
-  ~KnownRunScope();
-  KnownRunScope(const KnownRunScope&) = delete;
-  KnownRunScope& operator=(const KnownRunScope&) = delete;
-};
-/// Null: nothing is known of them.
-const KnownRun* known_run(std::span<const Stamp> stamps);
-/// all_upright() of the stamps of a run.
-bool upright_run(std::span<const Stamp> stamps);
+/// all_upright() of the stamps of a run; `known` (null: nothing is known of them) is of these very stamps.
+bool upright_run(std::span<const Stamp> stamps, const KnownRun* known);
 
 /// Whole steps of a box that is min_mm + extent_mm, for vector kernels: a billionth of its size each.
 float tip_step_mm(const Vec3& extent_mm);

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "removal/stamp_sink.h"
 #include "removal/tool_path.h"
 
 namespace camber::removal {

@@ -6,15 +6,11 @@
 
 #include <Eigen/Geometry>
 
-#include "removal/stamp_sink.h"
-
 namespace camber::removal {
 
 using feedmodel::TimedSample;
 
 namespace {
-
-thread_local const StampSink* the_sink = nullptr;
 
 constexpr double kStill_mm = 1e-6;
 constexpr double kStill = 1e-9;  // axis and spin
@@ -55,12 +51,6 @@ ToolPose between(const ToolPose& a, const ToolPose& b, double u) {
 
 }  // namespace
 
-StampSinkScope::StampSinkScope(const StampSink& sink) {
-  assert(!the_sink);
-  the_sink = &sink;
-}
-StampSinkScope::~StampSinkScope() { the_sink = nullptr; }
-
 ToothMotion motion_in_tool(std::span<const Stamp> stamps, std::size_t k) {
   const Stamp& stamp = stamps[k];
   ToothMotion out{direction_in_tool(stamp.pose, stamp.feed_per_tooth_mm)};
@@ -93,12 +83,14 @@ std::vector<bool> selected_moves(const nc::Interpretation& program, const machin
 }
 
 StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools,
-                           std::vector<bool> selected, std::vector<HoleMove> holes, const kinematics::PartPath* rotary)
+                           std::vector<bool> selected, std::vector<HoleMove> holes, const kinematics::PartPath* rotary,
+                           StampSink sink)
     : program_(program),
       tools_(tools),
       selected_(std::move(selected)),
       holes_(std::move(holes)),
       rotary_(rotary),
+      sink_(std::move(sink)),
       tracker_(program, measure_of(rotary)) {
   assert(selected_.size() == program.moves.size());
   assert(holes_.empty() || holes_.size() == program.moves.size());
@@ -108,7 +100,7 @@ StampBuilder::StampBuilder(const nc::Interpretation& program, const std::map<int
     const nc::ModalState& state = program.state_of(move);
     return !stamped || (tools.contains(state.tool) && state.spindle_speed_rpm > 0);
   }));
-  if (!the_sink) path_.stamps.reserve(room_for(program, tools, selected_));
+  if (!sink_) path_.stamps.reserve(room_for(program, tools, selected_));
 }
 
 feedmodel::PathMeasure StampBuilder::measure_of(const kinematics::PartPath* rotary) const {
@@ -201,9 +193,9 @@ void StampBuilder::append(const Stamp& stamp, int tool, RunKind kind) {
   if (path_.runs.empty() || path_.runs.back().tool != tool || path_.runs.back().kind != kind)
     path_.runs.push_back({tool, number, 0, kind});
   ++path_.runs.back().count;
-  if (the_sink) {
+  if (sink_) {
     path_.stamps.clear();
-    (*the_sink)(path_.runs.back(), number, stamp);
+    sink_(path_.runs.back(), number, stamp);
   }
   path_.stamps.push_back(stamp);
   cutting_ = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -91,6 +92,10 @@ struct StampPath {
   std::vector<RapidStart> rapids;  ///< in order
 };
 
+/// The stamps of a path one by one, for those who do not keep all of them: a stamp and its number in the path; of `run`
+/// the count is not known yet.
+using StampSink = std::function<void(const ToolRun& run, std::size_t number, const Stamp& stamp)>;
+
 /// The same tooth passings on the programmed moves themselves, without servo lag and corner rounding: each stamp of
 /// milling stands where the programmed path is nearest to the axes, so that feed marks and cusps stay in step. Where
 /// the axes cut a corner, and at the ends of a cut, stamps no farther apart are added: the whole of every `selected`
@@ -115,10 +120,12 @@ std::vector<bool> selected_moves(const nc::Interpretation& program, const machin
 ///
 /// `rotary`: of a program with rotary motion, of which `program` then is the moves_in_part(), and samples are those of
 /// feedmodel::PartSamples; a stamp has the pose of the actual axes, and is placed where the tool turns as well.
+///
+/// `sink` (may be empty) gets every stamp; none but the last is kept then, and take() has the runs and rapids.
 class StampBuilder {
  public:
   StampBuilder(const nc::Interpretation& program, const std::map<int, machine::Tool>& tools, std::vector<bool> selected,
-               std::vector<HoleMove> holes = {}, const kinematics::PartPath* rotary = nullptr);
+               std::vector<HoleMove> holes = {}, const kinematics::PartPath* rotary = nullptr, StampSink sink = {});
   StampBuilder(const StampBuilder&) = delete;
   StampBuilder& operator=(const StampBuilder&) = delete;
   void add(std::span<const feedmodel::TimedSample> samples);
@@ -145,6 +152,7 @@ class StampBuilder {
   std::vector<bool> selected_;
   std::vector<HoleMove> holes_;
   const kinematics::PartPath* rotary_;
+  StampSink sink_;
   feedmodel::ToolPlace tool_, last_tool_;  ///< of `rotary`: of this sample and of the last one
   feedmodel::PathTracker tracker_;
   StampPath path_;

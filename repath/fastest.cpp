@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "kinematics/machine_program.h"
 #include "nc/language.h"
 #include "repath/smoothed_path.h"
 
@@ -25,15 +26,6 @@ constexpr double kFewestTrials = 12, kMaxTrials = 70;
 constexpr double kFirstFeed = 0.7, kMinFeed = 0.25, kMinFraction = 0.1;
 constexpr double kAim = 0.998;    ///< of the limit
 constexpr double kNearer = 0.99;  ///< than the old program, by so much: worth another one where none keeps to the limit
-
-nc::Interpretation interpreted(const std::string& name, const std::string& text, nc::LanguageId language,
-                               const nc::InterpreterOptions& options) {
-  Diagnostics diagnostics;  // what it says of the text was said of the old one; an error is ours
-  const nc::Program program = nc::read_program(SourceText(name, text), language, diagnostics);
-  nc::Interpretation moves = nc::interpret(program, options, diagnostics);
-  diagnostics.throw_if_errors();
-  return moves;
-}
 
 bool better(const ContourFigures& a, const ContourFigures& b) {
   if (a.time_s * kSameTime < b.time_s || b.time_s * kSameTime < a.time_s) return a.time_s < b.time_s;
@@ -132,7 +124,12 @@ class Search {
   /// Its number among those tried.
   std::size_t predict(Candidate c) {
     const std::string text = resegmenter_.lay_out(layout_of(c)).text;
-    const nc::Interpretation moves = interpreted(name_, text, language_, options_.interpreter);
+    Diagnostics diagnostics;  // what it says of the text was said of the old one; an error is ours
+    const kinematics::MachineProgram program = kinematics::open_program(
+        SourceText(name_, text), machine_,
+        {.given = options_.interpreter, .rotary = kinematics::RotaryWords::never, .language = language_}, diagnostics);
+    diagnostics.throw_if_errors();
+    const nc::Interpretation& moves = program.commanded();
     predicted_blocks_ = static_cast<double>(moves.moves.size());
     c.figures = contour_figures(moves, meant_, machine_);
     out_.tried.push_back(c);

@@ -8,7 +8,7 @@
 #include "base/numbers.h"
 #include "base/stage.h"
 #include "base/units.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "repath/post_divide.h"
 #include "repath/post_motions.h"
 #include "repath/post_plan.h"
@@ -23,7 +23,7 @@ PostRounding rounding_of(const nc::Program& program, const machine::Control& con
   const int own = std::clamp(nc::coordinate_decimals_of(program), kLeastDecimals, kMostDecimals);
   PostRounding out{own, own + 1, own};
   if (control.least_increment_mm) {
-    const nc::EmitOptions of_control = feedmodel::decimals_for(control, program);
+    const nc::EmitOptions of_control = kinematics::decimals_for(control, program);
     out = {of_control.decimals_mm, of_control.decimals_inch, of_control.decimals_mm};
   }
   if (options.decimals) out = {*options.decimals, *options.decimals, *options.decimals};
@@ -63,7 +63,7 @@ class Post {
         plan.push_back({.motion = i, .choice = {}, .before = {}});
     const auto divided = divide(motions, frame, plan, out);
     if (diagnostics_.has_errors()) return out;
-    PostWriter(program_, moves_, machine_, feedmodel::dialect_of(machine_.control.kind), options_, rounding_)
+    PostWriter(program_, moves_, machine_, kinematics::dialect_of(machine_.control.kind), options_, rounding_)
         .write(motions, divided, out);
     return out;
   }

@@ -93,16 +93,16 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
     const auto flutes = static_cast<std::size_t>(job.tools.at(run.tool).flutes);
     const std::size_t end = run.from + run.count;
     for (std::size_t from = run.from; from < end;) {
-      const nc::Move& move = program.moves.moves[stamps[from].move];
+      const nc::Move& move = program.moves_in_part().moves[stamps[from].move];
       Turn turn;
       std::size_t k = from;
-      while (k < end && turn.teeth < flutes && program.moves.moves[stamps[k].move].block == move.block &&
+      while (k < end && turn.teeth < flutes && program.moves_in_part().moves[stamps[k].move].block == move.block &&
              (k == from || !stamps[k].first)) {
         turn.valid = turn.valid && prediction.validity.valid(k);
         if (const auto c = prediction.chatter.of(k); c.margin > turn.chatter.margin) turn.chatter = c;
         turn.add(prediction.cut.loads[k++]);
       }
-      const double rpm = program.moves.state_of(move).spindle_speed_rpm;
+      const double rpm = program.moves_in_part().state_of(move).spindle_speed_rpm;
       ForceRow row = row_of(stamps[from], move.block + 1, turn, rpm, static_cast<int>(flutes));
       row.tool = run.tool;
       take(row);

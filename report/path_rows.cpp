@@ -105,14 +105,14 @@ std::vector<PathRow> PathCollector::take() {
 
 std::vector<PathRow> rows_of_program(const simulate::SimulatedProgram& program, const machine::Machine& machine,
                                      const feedmodel::JointSampleSink& also) {
-  PathCollector collector(program.moves);
-  if (program.rotary)
-    simulate::predict_on_part(*program.rotary, machine, [&](const feedmodel::PartSamples& part) {
+  PathCollector collector(program.moves_in_part());
+  if (program.turns())
+    feedmodel::predict_on_part(program.moves_of_axes(), machine, [&](const feedmodel::PartSamples& part) {
       if (also) also(part.axes(), part.joints());
       collector.add(part.samples(), part.joints());
     });
   else
-    feedmodel::predict_feed(program.moves, machine, [&](std::span<const feedmodel::TimedSample> samples) {
+    feedmodel::predict_feed(program.moves_in_part(), machine, [&](std::span<const feedmodel::TimedSample> samples) {
       if (also) also(samples, {});
       collector.add(samples);
     });

@@ -25,7 +25,7 @@ using simulate::SimulatedProgram;
 
 std::uint32_t line_of(const SimulatedProgram& program, std::int32_t stamp) {
   if (stamp < 0 || static_cast<std::size_t>(stamp) >= program.path.stamps.size()) return 0;
-  return program.moves.moves[program.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
+  return program.moves_in_part().moves[program.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
 }
 
 SurfaceSample sample_of(const removal::SurfacePoint& p, const SimulatedProgram& program) {
@@ -96,7 +96,7 @@ void add_texts(ReportData& data, const machine::Job& job, const Diagnostics& dia
 }
 
 void add_worst_lines(ReportData& data, const SimulatedProgram& program, bool after) {
-  TextTable table = worst_lines_table(data.surface, program.text.source.text(), after);
+  TextTable table = worst_lines_table(data.surface, program.text().source.text(), after);
   if (!table.rows.empty()) data.tables.insert(data.tables.begin(), std::move(table));
 }
 
@@ -202,9 +202,9 @@ FormErrorPoints form_error_points(const SimulatedProgram& program, const simulat
             if (traced) point.model_error_um = 1000 * traced->predicted.surface[i].error_mm;
             if (p.machined_stamp >= 0) {
               const auto stamp = static_cast<std::size_t>(p.machined_stamp);
-              const nc::Move& move = program.moves.moves[program.path.stamps[stamp].move];
+              const nc::Move& move = program.moves_in_part().moves[program.path.stamps[stamp].move];
               point.block = move.block + 1;
-              point.tool = program.moves.state_of(move).tool;
+              point.tool = program.moves_in_part().state_of(move).tool;
             }
             return point;
           }};
@@ -239,7 +239,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   add_loads(rows, program.path, p.cut.loads);
   add_errors(rows, program.path, p.surface);
   if (turns(rows)) data.machine = machine_view(job, rows);
-  data.path.push_back({"", program.text.source.text(), std::move(rows)});
+  data.path.push_back({"", program.text().source.text(), std::move(rows)});
   if (!simulate::beyond_model(p)) add_worst_lines(data, program, false);
   add_chatter(data, job, p.chatter);
   add_texts(data, job, diagnostics, unsettled_sentence(program, p));
@@ -255,7 +255,7 @@ void add_traced(ReportData& data, const SimulatedProgram& program, const simulat
   data.compared = true;
   const auto line_of_model = [&program, &t](std::int32_t stamp) {
     if (stamp < 0 || static_cast<std::size_t>(stamp) >= t.model.path.stamps.size()) return std::uint32_t{0};
-    return program.moves.moves[t.model.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
+    return program.moves_in_part().moves[t.model.path.stamps[static_cast<std::size_t>(stamp)].move].block + 1;
   };
   data.surface = {p.surface.size(), [&p, &t, &program, line_of_model](std::size_t i) {
                     const auto& model = t.predicted.surface[i];
@@ -270,7 +270,7 @@ void add_traced(ReportData& data, const SimulatedProgram& program, const simulat
   data.path.back().name = data.names[1];
   add_loads(model_rows, t.model.path, t.predicted.cut.loads);
   add_errors(model_rows, t.model.path, t.predicted.surface);
-  data.path.insert(data.path.begin(), {data.names[0], program.text.source.text(), std::move(model_rows)});
+  data.path.insert(data.path.begin(), {data.names[0], program.text().source.text(), std::move(model_rows)});
   data.tables.insert(data.tables.begin(), traced_table(program, p, t));
 }
 
@@ -307,13 +307,13 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
                     return sample;
                   }};
   add_stock(data, c.stock);
-  add_shifts(after.rows, after.program.moves, shifted_from ? *shifted_from : before.program.moves);
+  add_shifts(after.rows, after.program.moves_in_part(), shifted_from ? *shifted_from : before.program.moves_in_part());
   for (CompensatedRun* run : {&before, &after}) {
     run->rows = shown_rows(data, job, run->program, std::move(run->rows));
     add_loads(run->rows, run->program.path, run->loads);
     add_errors(run->rows, run->program.path, run == &before ? c.surface_before : c.surface_after);
     if (!data.machine && turns(run->rows)) data.machine = machine_view(job, run->rows);
-    data.path.push_back({run == &before ? "before" : "after", run->program.text.source.text(), std::move(run->rows)});
+    data.path.push_back({run == &before ? "before" : "after", run->program.text().source.text(), std::move(run->rows)});
   }
   if (c.better || c.best > 0) data.download_name = file_name(output);  // else nothing is written
   data.tables = {rounds_table(c), limits_table(job, c)};

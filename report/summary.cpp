@@ -63,7 +63,8 @@ SpindleFigures spindle_figures(const simulate::SimulatedProgram& program, const 
   for (std::size_t k = 0; k < p.cut.loads.size(); ++k) {
     const auto& l = p.cut.loads[k];
     if (l.chip_mm3 <= 0 || l.torque_mean_Nmm <= 0 || !p.validity.valid(k)) continue;
-    const double rpm = program.moves.state_of(program.moves.moves[program.path.stamps[k].move]).spindle_speed_rpm;
+    const double rpm =
+        program.moves_in_part().state_of(program.moves_in_part().moves[program.path.stamps[k].move]).spindle_speed_rpm;
     const double power_W = simulate::power_W(l.torque_mean_Nmm, rpm);
     out.torque_max_Nm = std::max(out.torque_max_Nm, l.torque_max_Nmm / 1000);
     out.power_max_W = std::max(out.power_max_W, power_W);
@@ -138,7 +139,7 @@ std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& progr
   std::vector<std::size_t> lines;
   for (std::size_t i = 0; i < p.cut.unsettled_moves.size(); ++i)
     if (!reason || p.cut.unsettled_reasons[i] == *reason)
-      lines.push_back(program.moves.moves[p.cut.unsettled_moves[i]].block + 1);
+      lines.push_back(program.moves_in_part().moves[p.cut.unsettled_moves[i]].block + 1);
   std::ranges::sort(lines);
   const auto again = std::ranges::unique(lines);
   lines.erase(again.begin(), again.end());

@@ -36,7 +36,7 @@ class TimedTrack {
   std::size_t every_ = 1, seen_ = 0;
 };
 
-/// The track of a whole program with rotary motion. Requires feedmodel::has_rotary_motion.
+/// The track of a whole program with rotary motion. Requires kinematics::has_rotary_motion.
 std::vector<kinematics::PoseSample> timed_track(const machine::Machine& machine, const nc::Interpretation& moves);
 
 }  // namespace camber::report

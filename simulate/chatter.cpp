@@ -96,7 +96,8 @@ class ChatterSearch {
       if (!(loads_[k].arc.area_mm_rad > kNoCut)) continue;
       if (stamps[k].move != move) {
         move = stamps[k].move;
-        now = &at_speed(run.tool, program_.moves.state_of(program_.moves.moves[move]).spindle_speed_rpm,
+        now = &at_speed(run.tool,
+                        program_.moves_in_part().state_of(program_.moves_in_part().moves[move]).spindle_speed_rpm,
                         stamps[k].pose.upright());
       }
       judge(k, *now);
@@ -121,7 +122,7 @@ class ChatterSearch {
   }
 
   std::size_t line_of(std::size_t stamp) const {
-    return program_.moves.moves[program_.path.stamps[stamp].move].block + std::size_t{1};
+    return program_.moves_in_part().moves[program_.path.stamps[stamp].move].block + std::size_t{1};
   }
 
   void judge(std::size_t k, ToolAtSpeed& t) {
@@ -227,15 +228,15 @@ void warn_of_chatter(const SimulatedProgram& program, const ChatterMargins& marg
   const std::vector<std::size_t> invalid = [&] {
     std::vector<std::size_t> lines;
     for (const std::uint32_t k : margins.invalid_stamps)
-      lines.push_back(program.moves.moves[program.path.stamps[k].move].block + std::size_t{1});
+      lines.push_back(program.moves_in_part().moves[program.path.stamps[k].move].block + std::size_t{1});
     std::ranges::sort(lines);
     return lines;
   }();
   for (const ChatterOperation& o : margins.operations) {
     if (o.margin <= 1 || !std::ranges::binary_search(invalid, o.line)) continue;
     const auto shown = std::span(o.lines).first(std::min(o.lines.size(), kNamed));
-    diagnostics.add(program.text.source.diagnostic(
-        Severity::warning, program.text.blocks[o.line - 1].offset,
+    diagnostics.add(program.text().source.diagnostic(
+        Severity::warning, program.text().blocks[o.line - 1].offset,
         fmt::format("{}; unstable in line{} {}{}, whose forces and errors are not valid", chatter_sentence(o),
                     o.lines.size() > 1 ? "s" : "", fmt::join(shown, ", "),
                     o.lines.size() > kNamed ? fmt::format(" and {} more", o.lines.size() - kNamed) : ""),

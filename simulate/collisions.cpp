@@ -40,8 +40,8 @@ class HoleWatch {
 
 /// Something that cuts was not simulated, so stock may stand that the real machine has removed.
 bool motion_left_out(const SimulatedProgram& program) {
-  for (std::size_t i = 0; i < program.moves.moves.size(); ++i) {
-    const nc::Move& m = program.moves.moves[i];
+  for (std::size_t i = 0; i < program.moves_in_part().moves.size(); ++i) {
+    const nc::Move& m = program.moves_in_part().moves[i];
     const bool cuts = m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc;
     const removal::HoleMove hole = program.holes[i];
     const bool carved = removal::makes_hole(hole) || hole == removal::HoleMove::way_out;
@@ -69,8 +69,8 @@ std::string deed(const Collision& c) {
 
 void report(const SimulatedProgram& program, const Collision& c, Severity severity, const std::string& message,
             Diagnostics& diagnostics) {
-  const std::size_t offset = program.text.blocks[program.moves.moves[c.move].block].offset;
-  diagnostics.add(program.text.source.diagnostic(severity, offset, message, check_name(c)));
+  const std::size_t offset = program.text().blocks[program.moves_in_part().moves[c.move].block].offset;
+  diagnostics.add(program.text().source.diagnostic(severity, offset, message, check_name(c)));
 }
 
 void report_inside(const SimulatedProgram& program, const std::vector<Collision>& found, Severity severity,
@@ -95,7 +95,7 @@ void report_outside(const SimulatedProgram& program, const std::vector<Collision
       program, c, severity,
       fmt::format("{} collision{} in moves outside the job's operations, the first one in line {}: {}; moves that the "
                   "job leaves out may have cleared the way",
-                  found.size(), found.size() == 1 ? "" : "s", program.moves.moves[c.move].block + 1, deed(c)),
+                  found.size(), found.size() == 1 ? "" : "s", program.moves_in_part().moves[c.move].block + 1, deed(c)),
       diagnostics);
 }
 
@@ -104,11 +104,11 @@ void report_outside(const SimulatedProgram& program, const std::vector<Collision
 std::vector<RapidCheck> rapids_of(const SimulatedProgram& program) {
   std::vector<RapidCheck> out;
   HoleWatch watch;
-  nc::KnownPlaces places(program.text, program.moves);
+  nc::KnownPlaces places(program.text(), program.moves_in_part());
   const auto& stamps = program.path.stamps;
   std::size_t next = 0;
-  for (std::uint32_t i = 0; i < program.moves.moves.size(); ++i) {
-    const nc::Move& m = program.moves.moves[i];
+  for (std::uint32_t i = 0; i < program.moves_in_part().moves.size(); ++i) {
+    const nc::Move& m = program.moves_in_part().moves[i];
     while (next < stamps.size() && stamps[next].move < i) ++next;
     const nc::KnownPlaces::Ends known = places.next(m);
     if (m.reference || watch.in_hole(m) || m.kind != nc::MoveKind::rapid || !known.end) continue;
@@ -121,14 +121,15 @@ std::vector<RapidCheck> rapids_of(const SimulatedProgram& program) {
 }
 
 void add_collision(const SimulatedProgram& program, const Collision& c, std::vector<Collision>& found) {
-  const auto block = program.moves.moves[c.move].block;
-  if (!found.empty() && program.moves.moves[found.back().move].block == block && found.back().part == c.part) return;
+  const auto block = program.moves_in_part().moves[c.move].block;
+  if (!found.empty() && program.moves_in_part().moves[found.back().move].block == block && found.back().part == c.part)
+    return;
   found.push_back(c);
 }
 
 std::vector<Collision> find_collisions(const machine::Job& job, const SimulatedProgram& program,
                                        const removal::Stock& blank) {
-  const bool upright = removal::all_upright(program.path.stamps) && !program.rotary;
+  const bool upright = removal::all_upright(program.path.stamps) && !program.turns();
   return upright ? find_upright_collisions(job, program, blank) : find_tilted_collisions(job, program, blank);
 }
 
@@ -143,10 +144,12 @@ void report_collisions(const machine::Job& job, const SimulatedProgram& program,
                        Diagnostics& diagnostics) {
   const std::optional<Severity> severity = collision_severity(job, program);
   if (!severity) return;
-  const machine::Operations operations = as_lines(job.operations, program.text, program.moves);
+  const machine::Operations operations = as_lines(job.operations, program.text(), program.moves_in_part());
   std::vector<Collision> inside, outside;
   for (const Collision& c : found)
-    (removal::in_operations(program.moves, program.moves.moves[c.move], operations) ? inside : outside).push_back(c);
+    (removal::in_operations(program.moves_in_part(), program.moves_in_part().moves[c.move], operations) ? inside
+                                                                                                        : outside)
+        .push_back(c);
   report_inside(program, inside, *severity, diagnostics);
   report_outside(program, outside, *severity, diagnostics);
 }

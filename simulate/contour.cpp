@@ -95,10 +95,12 @@ double p95_um(const std::vector<float>& contour_mm, std::span<const removal::Sur
 }  // namespace
 
 void part_contour(const machine::Job& job, const SimulatedProgram& program, Target& target) {
-  if (program.rotary || p95_um(target.contour_mm, target.map->points()) < kWorthParting_um) return;
+  if (program.turns() || p95_um(target.contour_mm, target.map->points()) < kWorthParting_um) return;
   target.contour_parts.emplace();
-  target.contour_parts->lag_mm = contour_of(job, program, stopping(program.moves), stopping(job.machine), target);
-  target.contour_parts->path_tolerance_mm = contour_of(job, program, program.moves, without_lag(job.machine), target);
+  target.contour_parts->lag_mm =
+      contour_of(job, program, stopping(program.moves_in_part()), stopping(job.machine), target);
+  target.contour_parts->path_tolerance_mm =
+      contour_of(job, program, program.moves_in_part(), without_lag(job.machine), target);
 }
 
 void mark_contour_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece,

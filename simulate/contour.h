@@ -1,7 +1,7 @@
 #pragma once
 // Contour error: the effect of servo lag and corner rounding on the surface, without deflection.
+#include "simulate/path_stretch.h"
 #include "simulate/predict.h"
-#include "simulate/section_pieces.h"
 
 namespace camber::simulate {
 

@@ -18,8 +18,8 @@
 #include "deflection/tooth_marks.h"
 #include "removal/engagement.h"
 #include "removal/known_run.h"
+#include "simulate/path_stretch.h"
 #include "simulate/pieces.h"
-#include "simulate/section_pieces.h"
 #include "simulate/tooth_loads.h"
 
 namespace camber::simulate {
@@ -39,10 +39,10 @@ using removal::Stock;
 namespace {
 
 /// As engaged_top_mm of the stamp below which the stock rises most.
-double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
+double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps,
+                      const removal::KnownRun* known) {
   double rise = 0;
-  if (const removal::KnownRun* run = removal::known_run(stamps))
-    return simulate::engaged_top_mm(stock, tool, std::max(rise, stock.max_mm().z() - run->min_mm.z()));
+  if (known) return simulate::engaged_top_mm(stock, tool, std::max(rise, stock.max_mm().z() - known->min_mm.z()));
   for (const auto& s : stamps) {
     // The corner of the stock's box that lies farthest up the tool.
     const Vec3 corner = (s.pose.axis.array() > 0).select(stock.max_mm(), stock.min_mm());
@@ -86,7 +86,7 @@ class Cutter {
         rigid_(options.coupling == machine::Coupling::rigid),
         diameter_mm_(tool.diameter_mm),
         edges_end_mm_(tool.flute_length_mm.value_or(std::numeric_limits<double>::infinity())),
-        top_mm_(engaged_top_mm(stock, tool, stamps)),
+        top_mm_(engaged_top_mm(stock, tool, stamps, options.known)),
         envelope_(sampled_envelope(stock, tool, top_mm_, options)),
         model_(envelope_, material, deflection::beam_of(tool),
                deflection::node_heights(top_mm_,
@@ -226,7 +226,8 @@ class Cutter {
   /// Deflection straight from the chips.
   void engage(std::span<const Stamp> all, std::size_t from, DeflectionTable& deflections, std::vector<StampLoad>& loads,
               std::int32_t first_id, CutResult& result) {
-    if (!engager_) engager_.emplace(stock_, *blank_, envelope_, all, first_id, tooth_marks_ ? envelope_.flutes : 1);
+    if (!engager_)
+      engager_.emplace(stock_, *blank_, envelope_, all, first_id, tooth_marks_ ? envelope_.flutes : 1, options_.known);
     const auto& blocks = engager_->blocks();
     std::map<std::size_t, std::vector<removal::ChipSample>> turn;  // what the turn needs
     std::mutex turn_lock;
@@ -375,7 +376,7 @@ class Cutter {
               std::int32_t first_id, CutResult& result) {
     if (!static_cut_) {
       static_cut_.emplace(stock_, *blank_, envelope_, model_, all, first_id, settle_options(), run_out_,
-                          different_teeth_);
+                          different_teeth_, options_.known);
       static_cut_->remember(from, last_rows_, deflections.row_size(), largest_bend_mm_);
     }
     // Loads between two readings lie between theirs; each stretch of passings ends with readings.

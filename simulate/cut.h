@@ -16,6 +16,10 @@
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 
+namespace camber::removal {
+struct KnownRun;
+}
+
 namespace camber::simulate {
 
 /// The loads of one tooth passing. Forces act on the tool, in the part's axes, which are the machine's where the tool
@@ -74,6 +78,7 @@ struct CutOptions {
   /// Rigid only, not 0: the loads for chips of this ratio to their thickness are recorded as well, as another feed of
   /// the same path would take them.
   double chip_ratio = 0;
+  const removal::KnownRun* known = nullptr;  ///< of the stamps of the run, where they are one (removal/known_run.h)
 };
 
 /// How the tool was bent while it cut the stamps before others, static coupling.

@@ -97,8 +97,8 @@ class Report {
                blank = machine::is_assumed(assumed_, "stock", "box_mm");
     if (length || blank) {
       warned_.insert(number);
-      diagnostics_.add(program_.text.source.diagnostic(
-          Severity::warning, program_.text.blocks[block].offset,
+      diagnostics_.add(program_.text().source.diagnostic(
+          Severity::warning, program_.text().blocks[block].offset,
           fmt::format("T{} meets material {:.1f} mm above its tip, but {} = {:g}, {}", number, height_mm, key,
                       cutter_end_mm(tool),
                       length
@@ -108,8 +108,8 @@ class Report {
       return;
     }
     said_.insert(block);
-    diagnostics_.add(program_.text.source.diagnostic(
-        Severity::error, program_.text.blocks[block].offset,
+    diagnostics_.add(program_.text().source.diagnostic(
+        Severity::error, program_.text().blocks[block].offset,
         fmt::format("T{} meets material {:.1f} mm above its tip, but {} = {:g}; a cut that {} was expected", number,
                     height_mm, key, cutter_end_mm(tool), flutes ? "its flutes reach" : "ends below the holder"),
         name));
@@ -187,7 +187,7 @@ class UprightSearch {
     const UpperCylinder cylinder(job_.tools.at(tool), stock, distance_);
     const removal::Stock::Probe probe(stock);
     for_places(cylinder, from, to, [&](std::size_t k, const Vec3& tip) {
-      const std::uint32_t block = program_.moves.moves[program_.path.stamps[k].move].block;
+      const std::uint32_t block = program_.moves_in_part().moves[program_.path.stamps[k].move].block;
       if (report_.has(tool, block)) return true;
       if (const auto height = cylinder.meets(probe, tip)) report_.add(tool, block, *height);
       return !report_.full();
@@ -256,7 +256,7 @@ class TiltedSearch {
   }
 
   void look_at(int tool, std::size_t k, const ToolPose& pose, SurfaceFeeler& feeler, SweptStock& stock) {
-    const std::uint32_t block = program_.moves.moves[program_.path.stamps[k].move].block;
+    const std::uint32_t block = program_.moves_in_part().moves[program_.path.stamps[k].move].block;
     if (report_.has(tool, block) || !cylinders_.at(tool).may_touch(pose, false, blank_.min_mm(), blank_.max_mm()))
       return;
     bool some_cleared = false;
@@ -284,9 +284,9 @@ void report_above_flutes(const machine::Job& job, const SimulatedProgram& progra
                          const std::vector<CutAboveFlutes>& found, Diagnostics& diagnostics) {
   Report report(job, program, diagnostics);
   for (const CutAboveFlutes& cut : found) {
-    const nc::Move& m = program.moves.moves[cut.move];
+    const nc::Move& m = program.moves_in_part().moves[cut.move];
     if (report.full()) return;
-    const int tool = program.moves.state_of(m).tool;
+    const int tool = program.moves_in_part().state_of(m).tool;
     if (!report.has(tool, m.block)) report.add(tool, m.block, cut.above_tip_mm);
   }
 }

@@ -83,10 +83,10 @@ class Surveyor {
   }
 
  private:
-  const std::vector<nc::Move>& moves() const { return program_.moves.moves; }
+  const std::vector<nc::Move>& moves() const { return program_.moves_in_part().moves; }
   bool cuts(std::uint32_t i) const { return program_.selected[i] || removal::makes_hole(program_.holes[i]); }
   const SurveyTool* tool_of(std::uint32_t i) const {
-    const auto tool = tools_.find(program_.moves.state_of(moves()[i]).tool);
+    const auto tool = tools_.find(program_.moves_in_part().state_of(moves()[i]).tool);
     return tool == tools_.end() ? nullptr : &tool->second;
   }
 
@@ -111,12 +111,12 @@ class Surveyor {
   double cut_up_to_allowance() {
     double removed = 0;
     const SimulatedProgram& target = options_.target ? *options_.target : program_;
-    for (std::uint32_t i = 0; i < target.moves.moves.size(); ++i) {
+    for (std::uint32_t i = 0; i < target.moves_in_part().moves.size(); ++i) {
       if (!target.selected[i]) continue;
-      const auto tool = tools_.find(target.moves.state_of(target.moves.moves[i]).tool);
+      const auto tool = tools_.find(target.moves_in_part().state_of(target.moves_in_part().moves[i]).tool);
       if (tool == tools_.end() || job_.stock.allowance_mm >= tool->second.shape.radius_mm) continue;
       const CutterBottom smaller(tool->second.shape, job_.stock.allowance_mm);
-      along(target.moves, i, smaller,
+      along(target.moves_in_part(), i, smaller,
             [&](const Vec3& tip, double, double) { removed += heights_.cut(smaller, tip).volume_mm3; });
     }
     return removed;
@@ -133,7 +133,7 @@ class Surveyor {
     MoveCut& m = out.moves[i];
     const double least = kStepError * heights_.cell_mm();
     Vec3 looked_at = Vec3::Constant(1e9);
-    along(program_.moves, i, tool->bottom, [&](const Vec3& tip, double step, double) {
+    along(program_.moves_in_part(), i, tool->bottom, [&](const Vec3& tip, double step, double) {
       const HeightMap::Cut cut = heights_.cut(tool->bottom, tip);
       m.length_mm += step;
       m.volume_mm3 += cut.volume_mm3;
@@ -193,7 +193,8 @@ class Surveyor {
   }
 
   void add(std::uint32_t i, Collision::Part part, bool rapid, const Vec3& place, HeightSurvey& out) {
-    add_collision(program_, {part, rapid, 0, i, program_.moves.state_of(moves()[i]).tool, place}, out.collisions);
+    add_collision(program_, {part, rapid, 0, i, program_.moves_in_part().state_of(moves()[i]).tool, place},
+                  out.collisions);
   }
 
   const machine::Job& job_;
@@ -207,13 +208,13 @@ class Surveyor {
 /// Cells that the cutters pass over, for cells of 1 mm.
 double work_of(const machine::Job& job, const SimulatedProgram& program, double cell) {
   double out = 0;
-  for (std::size_t i = 0; i < program.moves.moves.size(); ++i) {
+  for (std::size_t i = 0; i < program.moves_in_part().moves.size(); ++i) {
     if (!program.selected[i] && !removal::makes_hole(program.holes[i])) continue;
-    const nc::Move& m = program.moves.moves[i];
-    const auto tool = job.tools.find(program.moves.state_of(m).tool);
+    const nc::Move& m = program.moves_in_part().moves[i];
+    const auto tool = job.tools.find(program.moves_in_part().state_of(m).tool);
     if (tool == job.tools.end()) continue;
     const double d = tool->second.diameter_mm, step = std::sqrt(4 * d * kStepError * cell);
-    out += (1 + nc::length_mm(program.moves, m) / step) * std::max(cell * cell, d * d);
+    out += (1 + nc::length_mm(program.moves_in_part(), m) / step) * std::max(cell * cell, d * d);
   }
   return out;
 }
@@ -246,9 +247,9 @@ std::optional<HeightMap> stock_heights(const machine::Job& job, double cell) {
 
 std::optional<HeightSurvey> survey_heights(const machine::Job& job, const SimulatedProgram& program,
                                            const SurveyOptions& options) {
-  if (program.rotary) return std::nullopt;
+  if (program.turns()) return std::nullopt;
   const bool upright = std::ranges::all_of(
-      program.moves.states, [](const nc::ModalState& s) { return s.work_frame == nc::WorkFrame::machine; });
+      program.moves_in_part().states, [](const nc::ModalState& s) { return s.work_frame == nc::WorkFrame::machine; });
   if (!upright) return std::nullopt;
   std::optional<HeightMap> heights = stock_heights(job, options.cell_mm);
   if (!heights) return std::nullopt;

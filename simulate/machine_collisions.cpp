@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/stage.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
 #include "simulate/machine_places.h"
 #include "simulate/machine_solids.h"
 
@@ -215,7 +215,7 @@ std::string deed(const machine::Machine& machine, const MachineCollision& c) {
 std::optional<Vec3> origin_of_machine(const machine::Job& job, const nc::Interpretation& moves) {
   if (moves.machine_origin_mm) return moves.machine_origin_mm;
   const auto& offset = job.compensation.work_offset_mm;
-  if (!offset || feedmodel::has_rotary_motion(moves, job.machine)) return std::nullopt;
+  if (!offset || kinematics::has_rotary_motion(moves, job.machine)) return std::nullopt;
   return Vec3(-*offset);
 }
 

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "base/units.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/rapid.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"
 #include "nc/known_places.h"
 #include "simulate/tool_outline.h"
@@ -110,7 +110,7 @@ kinematics::Chain chain_of(const machine::Machine& machine) {
 
 void for_each_machine_move(const machine::Job& job, const nc::Program& text, const nc::Interpretation& moves,
                            const Vec3& origin_mm, const MachineMoveSink& sink) {
-  if (feedmodel::has_rotary_motion(moves, job.machine))
+  if (kinematics::has_rotary_motion(moves, job.machine))
     pass_turning(job, moves, sink);
   else
     pass_upright(job, text, moves, origin_mm, sink);

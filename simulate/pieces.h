@@ -1,6 +1,6 @@
 #pragma once
 // A prediction put together from parts that were computed apart: pieces of the path, and a target that is joined
-// instead of swept. For simulate/sections.h.
+// instead of swept. For distribute/.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,19 +10,19 @@
 #include "machine/job.h"
 #include "removal/stock_part.h"
 #include "simulate/cut.h"
+#include "simulate/path_stretch.h"
 #include "simulate/predict.h"
-#include "simulate/section_pieces.h"
 #include "simulate/setup.h"
 #include "simulate/setup_checks.h"
 
 namespace camber::simulate {
 
-struct ThinPath;  // simulate/section_programs.h
-
 /// simulate_motion() in two steps. First: reads, interprets and checks a program; `path` and `feed` are empty.
 SimulatedProgram read_moves(SourceText source, const machine::Job& job, Diagnostics& diagnostics);
-/// Second: times it, and stamps it. Its text is not looked at. Twice the same.
-void time_path(SimulatedProgram& program, const machine::Job& job, const feedmodel::SampleSink& samples);
+/// Second: times it, and stamps it. Its text is not looked at. Twice the same. `stamps` (may be empty): see
+/// removal::StampBuilder.
+void time_path(SimulatedProgram& program, const machine::Job& job, const feedmodel::SampleSink& samples,
+               const removal::StampSink& stamps = {});
 
 /// memory_factors() of a path of which some stamps are in memory.
 MemoryFactors memory_factors(const machine::Job& job, const nc::Program& text, const nc::Interpretation& moves,
@@ -81,9 +81,10 @@ struct PieceCut {
   machine::Coupling coupling = machine::Coupling::static_;
   const removal::Stock* before_run = nullptr;
   removal::SurfaceMap* surface = nullptr;
-  const removal::Stock* target = nullptr;  ///< for the deflection at the contact
-  std::optional<std::size_t> turn_from{};  ///< see PredictOptions
-  const BendBefore* bend = nullptr;        ///< static: of the stamps before, where it is known
+  const removal::Stock* target = nullptr;    ///< for the deflection at the contact
+  std::optional<std::size_t> turn_from{};    ///< see PredictOptions
+  const BendBefore* bend = nullptr;          ///< static: of the stamps before, where it is known
+  const removal::KnownRun* known = nullptr;  ///< see CutOptions
   std::function<void(double)> progress{};
 };
 /// Cuts a part of a run; `stock` is as the stamps before it have left it.

@@ -9,7 +9,6 @@
 
 #include "base/freed_memory.h"
 #include "base/stage.h"
-#include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
 #include "removal/engagement.h"
 #include "removal/nominal_path.h"
@@ -18,13 +17,11 @@
 #include "simulate/job_checks.h"
 #include "simulate/job_stock.h"
 #include "simulate/memory.h"
-#include "simulate/never_turns.h"
 #include "simulate/operations.h"
+#include "simulate/path_stretch.h"
 #include "simulate/pieces.h"
 #include "simulate/region.h"
-#include "simulate/section_programs.h"
 #include "simulate/setup_checks.h"
-#include "simulate/shared_prediction.h"
 #include "simulate/validity.h"
 #include "simulate/verdict.h"
 
@@ -70,9 +67,10 @@ double band_voxels(const Job& job, double thickest) {
 MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock, double band,
                                const TargetWork& work, Diagnostics& diagnostics) {
   const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
-  return check_memory(
-      job, memory_factors(job, program.text, program.moves, path, {stock.min_mm, stock.max_mm, band}, work.within),
-      diagnostics);
+  return check_memory(job,
+                      memory_factors(job, program.text(), program.moves_in_part(), path,
+                                     {stock.min_mm, stock.max_mm, band}, work.within),
+                      diagnostics);
 }
 
 double band_of(const Job& job, const SimulatedProgram& program, double min_chip_mm, const TargetWork& work) {
@@ -158,39 +156,38 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
 }
 
 SimulatedProgram read_moves(SourceText source, const Job& job, Diagnostics& diagnostics) {
-  SimulatedProgram out;
-  out.text = nc::read_program(std::move(source), diagnostics);
-  out.moves = nc::interpret(out.text, interpreter_options(job, names_rotary_axes(job.machine, out.text)), diagnostics);
+  SimulatedProgram out{
+      kinematics::open_program(std::move(source), job.machine, kinematics::reading_of(job), diagnostics)};
   diagnostics.throw_if_errors();
-  if (never_turns(job.machine, out.moves)) out.moves.rotary.clear();
-  out.rotary = read_rotary_motion(job.machine, out.text, out.moves, diagnostics);
-  if (out.rotary) out.moves = out.rotary->path().moves_in_part();
-  const machine::Operations operations = as_lines(job.operations, out.text, out.moves);
-  out.selected = removal::selected_moves(out.moves, operations);
-  out.holes = removal::hole_moves(out.moves, operations, job.tools);
+  kinematics::check_on_part(out, diagnostics);
+  const machine::Operations operations = as_lines(job.operations, out.text(), out.moves_in_part());
+  out.selected = removal::selected_moves(out.moves_in_part(), operations);
+  out.holes = removal::hole_moves(out.moves_in_part(), operations, job.tools);
   for (std::size_t i = 0; i < out.holes.size(); ++i)
     if (out.holes[i] != removal::HoleMove::none) out.selected[i] = false;
-  check_cutting(job, out.text, out.moves, out.selected, out.holes, diagnostics);
+  check_cutting(job, out.text(), out.moves_in_part(), out.selected, out.holes, diagnostics);
   diagnostics.throw_if_errors();
   return out;
 }
 
-void time_path(SimulatedProgram& program, const Job& job, const feedmodel::SampleSink& samples) {
-  removal::StampBuilder builder(program.moves, job.tools, program.selected, program.holes, program.part_path());
+void time_path(SimulatedProgram& program, const Job& job, const feedmodel::SampleSink& samples,
+               const removal::StampSink& stamps) {
+  removal::StampBuilder builder(program.moves_in_part(), job.tools, program.selected, program.holes,
+                                program.part_path(), stamps);
   const auto take = [&](const auto& run, std::span<const feedmodel::TimedSample> timed) {
     builder.add(run);
     if (samples) samples(timed);
   };
-  program.feed = program.rotary
-                     ? predict_on_part(*program.rotary, job.machine,
-                                       [&](const feedmodel::PartSamples& run) { take(run, run.samples()); })
-                     : feedmodel::predict_feed(program.moves, job.machine,
+  program.feed = program.turns()
+                     ? feedmodel::predict_on_part(program.moves_of_axes(), job.machine,
+                                                  [&](const feedmodel::PartSamples& run) { take(run, run.samples()); })
+                     : feedmodel::predict_feed(program.moves_in_part(), job.machine,
                                                [&](std::span<const feedmodel::TimedSample> run) { take(run, run); });
   program.path = builder.take();
 }
 
 Motion motion_at(const SimulatedProgram& program, const Job& job, std::span<const feedmodel::TimedSample> samples) {
-  removal::StampBuilder builder(program.moves, job.tools, program.selected, program.holes);
+  removal::StampBuilder builder(program.moves_in_part(), job.tools, program.selected, program.holes);
   builder.add(samples);
   return {builder.take(), {0, 0, program.feed.blocks}};
 }
@@ -206,7 +203,7 @@ namespace {
 void add_turned(const Job& job, const SimulatedProgram& program, Places& places) {
   for (const removal::Stamp& stamp : program.path.stamps) places.tip.add(stamp.pose.tip_mm);
   if (removal::all_upright(program.path.stamps)) return;
-  for (const int tool : cutting_tools(program.moves, program.selected, program.holes))
+  for (const int tool : cutting_tools(program.moves_in_part(), program.selected, program.holes))
     places.radius_mm = std::max(places.radius_mm, job.tools.at(tool).overhang_mm);
 }
 
@@ -218,10 +215,10 @@ MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, 
 }
 
 Places places_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock) {
-  Places out{tip_extents(program.moves, program.selected, program.holes), 0, stock};
-  for (const int tool : cutting_tools(program.moves, program.selected, program.holes))
+  Places out{tip_extents(program.moves_in_part(), program.selected, program.holes), 0, stock};
+  for (const int tool : cutting_tools(program.moves_in_part(), program.selected, program.holes))
     out.radius_mm = std::max(out.radius_mm, job.tools.at(tool).diameter_mm / 2);
-  if (program.rotary) add_turned(job, program, out);
+  if (program.turns()) add_turned(job, program, out);
   return out;
 }
 
@@ -286,7 +283,8 @@ NominalCutters cutters_within(const Job& job, const SimulatedProgram& target, co
   if (work.nominal)
     out.runs = take_kept(*work.nominal, take);
   else
-    out.runs = removal::follow_nominal_path(target.moves, target.selected, target.path, target.part_path(), take);
+    out.runs =
+        removal::follow_nominal_path(target.moves_in_part(), target.selected, target.path, target.part_path(), take);
   put();
   return out;
 }
@@ -322,7 +320,7 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
   Places places = places_of(job, target, {blank.min_mm(), blank.max_mm()});
   if (!removal::all_upright(target.path.stamps))  // a tilted tool reaches down past its tip
     places.tip.add(places.tip.min_mm - Vec3(0, 0, places.radius_mm));
-  check_places(target.text.source.name(), places, diagnostics);
+  check_places(target.text().source.name(), places, diagnostics);
   diagnostics.throw_if_errors();
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
@@ -363,11 +361,11 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     cutters = cutters_within(job, target, work);
   } else {
     const removal::StampPath nominal =
-        removal::nominal_path(target.moves, target.selected, target.path, target.part_path());
+        removal::nominal_path(target.moves_in_part(), target.selected, target.path, target.part_path());
     removed_mm3 = work.surface ? work.surface(surface) : sweep_path(surface, job, nominal, 0, "cutting as the target");
     cutters = cutters_of(job, nominal);
   }
-  if (removed_mm3 < nothing_mm3(job)) report_nothing_removed(target.text.source.name(), where, diagnostics);
+  if (removed_mm3 < nothing_mm3(job)) report_nothing_removed(target.text().source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
   std::optional<removal::PartMesh> part;
   if (!job.part.mesh.empty() && work.judged) {
@@ -453,7 +451,7 @@ PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job
   const auto all = static_cast<double>(program.path.stamps.size());
   auto next_contacts = how.contacts.begin();
   std::size_t run_index = 0;
-  out.holes.count = removal::count_holes(program.moves, program.holes);
+  out.holes.count = removal::count_holes(program.moves_in_part(), program.holes);
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     const std::size_t from = run.from;
     const std::vector<Contact> contacts = how.contacts.empty() ? std::vector<Contact>() : std::move(*next_contacts++);
@@ -501,6 +499,7 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const PathStretch& pa
       cut_options_of(job, {.coupling = piece.coupling, .progress = progress, .surface = piece.surface}, tool);
   options.blank = piece.before_run;
   options.progress = progress;
+  options.known = piece.known;
   if (run.kind != removal::RunKind::milling) {
     assert(piece.from == 0 && piece.count == run.count);
     return cut_run_of(stock, job, run, stamps, {}, options);
@@ -544,9 +543,6 @@ PathLoads predict_loads(const Job& job, const removal::Stock& blank, const Simul
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
-  if (const CrewScope::Current* now = current_crew();
-      now && !options.turn_from && options.chip_ratio == 0 && !target.part_yields)
-    return predict_together(job, target, program, now->crew, now->memory, options.progress);
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {

@@ -8,6 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/machine_program.h"
 #include "machine/job.h"
 #include "nc/move.h"
 #include "nc/program.h"
@@ -20,26 +21,15 @@
 #include "simulate/holes.h"
 #include "simulate/memory.h"
 #include "simulate/part_survey.h"
-#include "simulate/rotary_motion.h"
 
 namespace camber::simulate {
 
 /// A program as it runs on the job's machine.
-struct SimulatedProgram {
-  nc::Program text;
-  nc::Interpretation moves;              ///< of a program with rotary motion: on the part (PartPath::moves_in_part)
-  std::vector<bool> selected;            ///< per move: milled by the job's operations
-  std::vector<removal::HoleMove> holes;  ///< per move
-  removal::StampPath path;
-  feedmodel::FeedSummary feed;
-  std::shared_ptr<const RotaryMotion> rotary{};  ///< none: X, Y and Z alone
-
-  /// As the text has them: what feed models and edits of the text go by.
-  const nc::Interpretation& text_moves() const { return rotary ? rotary->text() : moves; }
-  const kinematics::PartPath* part_path() const { return rotary ? &rotary->path() : nullptr; }
-  ToolPose pose_at(std::uint32_t move, double u) const {
-    return rotary ? rotary->path().pose_at(move, u) : nc::pose_at(moves, moves.moves[move], u);
-  }
+struct SimulatedProgram : kinematics::MachineProgram {
+  std::vector<bool> selected{};            ///< per move: milled by the job's operations
+  std::vector<removal::HoleMove> holes{};  ///< per move
+  removal::StampPath path{};
+  feedmodel::FeedSummary feed{};
 };
 
 /// Reads, interprets, checks and times a program, on the part where rotary axes turn. `samples` (may be empty) also
@@ -179,6 +169,10 @@ struct PredictOptions {
 
 Prediction predict(const machine::Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options);
+
+/// What makes the predictions of a command: predict(), or processes that share them (distribute/shared_prediction.h).
+using Predictor = std::function<Prediction(const machine::Job& job, const Target& target,
+                                           const SimulatedProgram& program, const PredictOptions& options)>;
 
 /// What a program does to the tool, without the surface that it leaves.
 struct LoadOptions {

@@ -42,9 +42,9 @@ class OtherMoves {
  public:
   OtherMoves(const machine::Job& job, const SimulatedProgram& program, const machine::Box& surface)
       : job_(job), program_(program), surface_(surface) {
-    const auto& moves = program.moves.moves;
+    const auto& moves = program.moves_in_part().moves;
     for (std::size_t i = 0; i < moves.size(); ++i)
-      if (program.selected[i]) offsets_.insert(program.moves.state_of(moves[i]).work_offset);
+      if (program.selected[i]) offsets_.insert(program.moves_in_part().state_of(moves[i]).work_offset);
     for (std::size_t i = 0; i < moves.size(); ++i)
       if (left_out(i)) add(static_cast<std::uint32_t>(i));
   }
@@ -74,10 +74,10 @@ class OtherMoves {
   };
 
   bool left_out(std::size_t i) const {
-    const nc::Move& m = program_.moves.moves[i];
+    const nc::Move& m = program_.moves_in_part().moves[i];
     if (program_.selected[i] || program_.holes[i] != removal::HoleMove::none || m.reference) return false;
     if (m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) return false;
-    const nc::ModalState& state = program_.moves.state_of(m);
+    const nc::ModalState& state = program_.moves_in_part().state_of(m);
     return job_.tools.contains(state.tool) && offsets_.contains(state.work_offset);
   }
 
@@ -93,13 +93,13 @@ class OtherMoves {
   }
 
   void add(std::uint32_t move) {
-    const nc::Move& m = program_.moves.moves[move];
-    const int number = program_.moves.state_of(m).tool;
+    const nc::Move& m = program_.moves_in_part().moves[move];
+    const int number = program_.moves_in_part().state_of(m).tool;
     const machine::Tool& tool = job_.tools.at(number);
     const kinematics::PartPath* part = program_.part_path();
     // A turn moves the cutter's upper end most.
-    const double length =
-        part ? part->length_mm(move) + tool.overhang_mm * part->turn_rad(move) : nc::length_mm(program_.moves, m);
+    const double length = part ? part->length_mm(move) + tool.overhang_mm * part->turn_rad(move)
+                               : nc::length_mm(program_.moves_in_part(), m);
     const auto steps = static_cast<std::size_t>(std::max(1.0, std::ceil(length / sample_spacing_mm(tool))));
     for (std::size_t k = 0; k <= steps; ++k) {
       Stamp stamp;
@@ -160,7 +160,8 @@ void mark_border(const machine::Job& job, const SimulatedProgram& program,
 
 void mark_not_judged(const machine::Operations& judged, const SimulatedProgram& program,
                      std::span<const removal::SurfacePoint> points, Target& target) {
-  const std::vector<bool> named = removal::selected_moves(program.moves, as_lines(judged, program.text, program.moves));
+  const std::vector<bool> named =
+      removal::selected_moves(program.moves_in_part(), as_lines(judged, program.text(), program.moves_in_part()));
   SurfaceRegion& region = target.region;
   if (region.left_out.empty()) region.left_out.assign(points.size(), false);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -200,22 +201,22 @@ void check_region_start(const machine::Job& job, const SimulatedProgram& program
 void check_region_start(const machine::Job& job, const SimulatedProgram& program,
                         const std::function<bool(const machine::Tool&, const ToolPose&)>& in_material,
                         Diagnostics& diagnostics) {
-  const auto& moves = program.moves.moves;
+  const auto& moves = program.moves_in_part().moves;
   const auto first = static_cast<std::size_t>(std::ranges::find(program.selected, true) - program.selected.begin());
   if (first == 0 || first >= moves.size()) return;
   const nc::Move &m = moves[first], &before = moves[first - 1];
   const bool cut = before.kind == nc::MoveKind::linear || before.kind == nc::MoveKind::arc;
   const bool known = (cut || before.kind == nc::MoveKind::rapid) && !before.reference &&
-                     program.moves.state_of(before).tool == program.moves.state_of(m).tool;
-  const auto tool = job.tools.find(program.moves.state_of(m).tool);
+                     program.moves_in_part().state_of(before).tool == program.moves_in_part().state_of(m).tool;
+  const auto tool = job.tools.find(program.moves_in_part().state_of(m).tool);
   // What holes took out before is not known of the blank.
   const auto holes_end = program.holes.begin() + static_cast<std::ptrdiff_t>(std::min(first, program.holes.size()));
   if (!cut && std::any_of(program.holes.begin(), holes_end, removal::makes_hole)) return;
   if (!known || tool == job.tools.end() ||
       !in_material(tool->second, program.pose_at(static_cast<std::uint32_t>(first), 0)))
     return;
-  diagnostics.add(program.text.source.diagnostic(
-      Severity::warning, program.text.blocks[m.block].offset,
+  diagnostics.add(program.text().source.diagnostic(
+      Severity::warning, program.text().blocks[m.block].offset,
       fmt::format("the job's operations begin here, {}: T{} stands in material, which is removed without chips; {} was "
                   "expected",
                   cut ? "in the middle of a cut" : "behind a rapid that ends in the stock", tool->first,

@@ -53,7 +53,7 @@ Setup set_up(const machine::Job& job, const SetupOptions& options, const SetupFi
       check_heights(job, programs.program, programs.original ? &*programs.original : nullptr, findings.target);
   findings.target.throw_if_errors();
   Target target = make_target(job, programs.of_target(), findings.target, work);
-  return {std::move(programs.program), std::move(programs.original), std::move(target), cleared};
+  return {std::move(programs.program), std::move(programs.original), std::move(target), cleared, options.predictor};
 }
 
 namespace {
@@ -90,7 +90,7 @@ bool check_heights(const machine::Job& job, const SimulatedProgram& program, con
   if (job.stock.allowance_mm > 0 && survey->allowance_mm3 < nothing_mm3(*survey)) report_allowance(job, diagnostics);
   diagnostics.throw_if_errors();
   if (!original && survey->removed_mm3 < nothing_mm3(*survey))
-    report_nothing_removed(program.text.source.name(), places_of(job, program, *stock), diagnostics);
+    report_nothing_removed(program.text().source.name(), places_of(job, program, *stock), diagnostics);
   diagnostics.throw_if_errors();
   set_times(program, survey->collisions);
   report_collisions(job, program, survey->collisions, diagnostics);
@@ -102,7 +102,7 @@ bool check_heights(const machine::Job& job, const SimulatedProgram& program, con
 }
 
 void check_clearance(const machine::Job& job, const Setup& setup, Diagnostics& diagnostics) {
-  check_machine_collisions(job, setup.program.text, setup.program.text_moves(), diagnostics);
+  check_machine_collisions(job, setup.program.text(), setup.program.moves_in_program(), diagnostics);
   if (setup.cleared) return;
   check_collisions(job, setup.program, setup.target.blank, diagnostics);
   check_region_start(job, setup.program, setup.target.blank, diagnostics);
@@ -114,12 +114,12 @@ std::function<void(double)> progress_of(const Progress& progress, std::string wh
   return [progress, what = std::move(what)](double fraction) { progress(what, fraction); };
 }
 
-Prediction predict_surface(const machine::Job& job, const Target& target, const SimulatedProgram& program,
-                           const Progress& progress, std::string what) {
+Prediction predict_surface(const Predictor& predictor, const machine::Job& job, const Target& target,
+                           const SimulatedProgram& program, const Progress& progress, std::string what) {
   PredictOptions options;
   options.contacts = false;
   options.progress = progress_of(progress, std::move(what));
-  return predict(job, target, program, options);
+  return predictor(job, target, program, options);
 }
 
 }  // namespace camber::simulate

@@ -22,6 +22,7 @@ struct Setup {
 
   const SimulatedProgram& target_program() const { return original ? *original : program; }
   bool cleared = false;  ///< see SetupOptions::clearance
+  Predictor predictor = simulate::predict;
 
   bool own_target() const { return !original; }
   /// Target::stamps where they are of `program`, else none.
@@ -37,6 +38,7 @@ struct SetupOptions {
   std::function<void(const SimulatedProgram&)> check{};
   /// Looks at clearance before anything is swept, where check_heights() can.
   bool clearance = false;
+  Predictor predictor = simulate::predict;  ///< for Setup::predictor
 };
 
 /// Where diagnostics go; may be one and the same.
@@ -67,7 +69,7 @@ using Progress = std::function<void(const std::string& what, double fraction)>;
 std::function<void(double)> progress_of(const Progress& progress, std::string what);
 
 /// The prediction of a program of which only the surface counts: no contacts (PredictOptions).
-Prediction predict_surface(const machine::Job& job, const Target& target, const SimulatedProgram& program,
-                           const Progress& progress, std::string what);
+Prediction predict_surface(const Predictor& predictor, const machine::Job& job, const Target& target,
+                           const SimulatedProgram& program, const Progress& progress, std::string what);
 
 }  // namespace camber::simulate

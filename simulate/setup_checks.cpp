@@ -9,7 +9,7 @@
 
 #include "base/mesh_file.h"
 #include "base/units.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/joint_map.h"
 #include "simulate/job_checks.h"
 #include "simulate/operations.h"
 
@@ -187,7 +187,7 @@ void check_job(const machine::Job& job, const nc::Program& program, const nc::In
   const std::vector<int> tools = cutting_tools(moves, selected, holes);
   const auto stock = stock_box(job);
   // Where rotary axes turn, moves say little of where the tool is: prepare() looks with its poses.
-  if (!stock || feedmodel::has_rotary_motion(moves, job.machine)) return;
+  if (!stock || kinematics::has_rotary_motion(moves, job.machine)) return;
   Places places{tip_extents(moves, selected, holes), 0, *stock};
   for (const int tool : tools)
     if (const auto known = job.tools.find(tool); known != job.tools.end())

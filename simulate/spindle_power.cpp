@@ -38,8 +38,8 @@ void check_spindle_power(const machine::Machine& machine, const SimulatedProgram
   if (std::isinf(machine.spindle.power_W)) return;
   std::map<int, Overload> overloads;
   for (std::size_t k = 0; k < loads.size(); ++k) {
-    const nc::Move& move = program.moves.moves[program.path.stamps[k].move];
-    const nc::ModalState& state = program.moves.state_of(move);
+    const nc::Move& move = program.moves_in_part().moves[program.path.stamps[k].move];
+    const nc::ModalState& state = program.moves_in_part().state_of(move);
     if (state.spindle_speed_rpm <= 0) continue;
     const double taken_W = power_W(loads[k].torque_mean_Nmm, state.spindle_speed_rpm);
     const double available_W = spindle_power_at(machine.spindle, state.spindle_speed_rpm);
@@ -54,8 +54,8 @@ void check_spindle_power(const machine::Machine& machine, const SimulatedProgram
     worst.block = move.block;
   }
   for (const auto& [tool, overload] : overloads)
-    diagnostics.add(program.text.source.diagnostic(Severity::warning, program.text.blocks[overload.block].offset,
-                                                   message_of(tool, overload), "spindle-power"));
+    diagnostics.add(program.text().source.diagnostic(Severity::warning, program.text().blocks[overload.block].offset,
+                                                     message_of(tool, overload), "spindle-power"));
 }
 
 }  // namespace camber::simulate

@@ -52,7 +52,7 @@ std::optional<ThinWall> thinnest_wall(const removal::HeightMap& map) {
 
 void suggest_workpiece(const machine::Job& job, const SimulatedProgram& program, const removal::HeightMap& machined,
                        Diagnostics& diagnostics) {
-  if (job.workpiece || program.rotary) return;
+  if (job.workpiece || program.turns()) return;
   const std::optional<ThinWall> wall = thinnest_wall(machined);
   if (!wall) return;
   Diagnostic d = job.voxel_place;

@@ -7,7 +7,6 @@
 #include "feedmodel/rapid.h"
 #include "feedmodel/timed_path.h"
 #include "simulate/collision_search.h"
-#include "simulate/moves_of_axes.h"
 #include "simulate/swept_stock.h"
 
 namespace camber::simulate {
@@ -50,7 +49,7 @@ void pose_by_joints(const machine::Job& job, const SimulatedProgram& program, co
     if (poses.size() > 1 && tool.displacement_mm(poses[poses.size() - 2], pose) < kClose_mm) poses.pop_back();
     append(poses, pose, tool);
   };
-  feedmodel::predict_joints(moves_of_axes(*program.rotary, job.machine), job.machine, [&](auto samples, auto joints) {
+  feedmodel::predict_joints(program.moves_of_axes(), job.machine, [&](auto samples, auto joints) {
     for (std::size_t i = 0; i < samples.size(); ++i) take(samples[i], joints[i].command_tool);
   });
 }
@@ -60,7 +59,7 @@ void pose_by_path(const machine::Job& job, const SimulatedProgram& program, cons
                   std::vector<PosedRapid>& rapids) {
   const auto& stamps = program.path.stamps;
   for (PosedRapid& rapid : rapids) {
-    const nc::Move& m = program.moves.moves[rapid.check.move];
+    const nc::Move& m = program.moves_in_part().moves[rapid.check.move];
     ToolPose pose = stamps.empty() ? ToolPose{} : stamps[std::min(rapid.check.before_stamp, stamps.size() - 1)].pose;
     for (const Vec3& tip : rapid.check.start_known
                                ? feedmodel::positioning_places(job.machine, m.start_mm, m.end_mm, kCollisionStep_mm)
@@ -89,10 +88,10 @@ std::vector<PosedRapid> posed_rapids(const machine::Job& job, const SimulatedPro
                                      const removal::Stock& blank) {
   std::vector<PosedRapid> rapids;
   for (const RapidCheck& r : rapids_of(program)) {
-    const int tool = program.moves.state_of(program.moves.moves[r.move]).tool;
+    const int tool = program.moves_in_part().state_of(program.moves_in_part().moves[r.move]).tool;
     if (tools.contains(tool)) rapids.push_back({r, tool});
   }
-  if (program.rotary)
+  if (program.turns())
     pose_by_joints(job, program, tools, rapids);
   else
     pose_by_path(job, program, tools, rapids);

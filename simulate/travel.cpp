@@ -57,10 +57,10 @@ void check_travel(const machine::Job& job, const nc::Program& program, const nc:
 }
 
 void check_travel(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
-  if (program.rotary)
-    kinematics::check_travel(job.machine, program.text, program.text_moves(), diagnostics);
+  if (program.turns())
+    kinematics::check_travel(job.machine, program.text(), program.moves_in_program(), diagnostics);
   else
-    check_travel(job, program.text, program.moves, diagnostics);
+    check_travel(job, program.text(), program.moves_in_part(), diagnostics);
 }
 
 }  // namespace camber::simulate

@@ -9,7 +9,7 @@ namespace {
 
 void report(const SimulatedProgram& program, std::size_t line, Severity severity, std::string message,
             Diagnostics& diagnostics) {
-  const auto& source = program.text.source;
+  const auto& source = program.text().source;
   const bool there = line >= 1 && line <= source.line_count();
   diagnostics.add({severity,
                    {source.name(), there ? line : 0, there ? std::size_t{1} : 0},
@@ -24,7 +24,7 @@ std::size_t turn_at_line(const SimulatedProgram& program, const machine::Job& jo
                          Diagnostics& diagnostics) {
   const auto& stamps = program.path.stamps;
   const auto on_line = [&](std::size_t k) {
-    return program.moves.moves[stamps[k].move].block + 1 == line &&
+    return program.moves_in_part().moves[stamps[k].move].block + 1 == line &&
            program.holes[stamps[k].move] != removal::HoleMove::tapped;
   };
   std::size_t first = stamps.size(), last = 0;
@@ -36,8 +36,8 @@ std::size_t turn_at_line(const SimulatedProgram& program, const machine::Job& jo
   if (first == stamps.size()) {
     report(program, line, Severity::error,
            fmt::format("--forces-at {}: line {} {}; a line that the job's operations cut was expected", line, line,
-                       line > program.text.source.line_count()
-                           ? fmt::format("is not in the program, which has {}", program.text.source.line_count())
+                       line > program.text().source.line_count()
+                           ? fmt::format("is not in the program, which has {}", program.text().source.line_count())
                            : "cuts nothing"),
            diagnostics);
     return 0;

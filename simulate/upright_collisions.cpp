@@ -101,8 +101,8 @@ class Search {
 
  private:
   bool comes_near(const RapidCheck& r) const {
-    const nc::Move& m = program_.moves.moves[r.move];
-    const auto feeler = feelers_.find(program_.moves.state_of(m).tool);
+    const nc::Move& m = program_.moves_in_part().moves[r.move];
+    const auto feeler = feelers_.find(program_.moves_in_part().state_of(m).tool);
     if (feeler == feelers_.end()) return false;
     const Vec3 way = m.end_mm - m.start_mm;
     if (r.start_known && way.x() == 0 && way.y() == 0 && way.z() >= 0 && feeler->second.widens_upwards()) return false;
@@ -113,14 +113,14 @@ class Search {
 
   template <class Function>
   void for_places(const RapidCheck& r, Function f) const {
-    const nc::Move& m = program_.moves.moves[r.move];
+    const nc::Move& m = program_.moves_in_part().moves[r.move];
     if (!r.start_known) return f(m.end_mm);
     for (const Vec3& tip : feedmodel::positioning_places(job_.machine, m.start_mm, m.end_mm, kCollisionStep_mm)) f(tip);
   }
 
   void feel_rapid(const RapidCheck& r) {
-    const nc::Move& m = program_.moves.moves[r.move];
-    const int tool = program_.moves.state_of(m).tool;
+    const nc::Move& m = program_.moves_in_part().moves[r.move];
+    const int tool = program_.moves_in_part().state_of(m).tool;
     const Feeler& feeler = feelers_.at(tool);
     const removal::Stock::Probe probe(stock_);
     bool hit = false;

@@ -159,7 +159,7 @@ Validity find_validity(const machine::Job& job, const SimulatedProgram& program,
 std::vector<std::size_t> lines_of(const SimulatedProgram& program, std::span<const std::uint32_t> stamps) {
   std::vector<std::size_t> lines;
   for (const std::uint32_t k : stamps)
-    lines.push_back(program.moves.moves[program.path.stamps[k].move].block + std::size_t{1});
+    lines.push_back(program.moves_in_part().moves[program.path.stamps[k].move].block + std::size_t{1});
   std::ranges::sort(lines);
   const auto again = std::ranges::unique(lines);
   lines.erase(again.begin(), again.end());

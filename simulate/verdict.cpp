@@ -66,7 +66,7 @@ std::string no_rest_sentence(const SimulatedProgram& program, const NoRest& give
       "the static deflection does not converge, from line {} on: {}; given up after {} of {} tooth passings; a shorter "
       "or thicker tool or a smaller cut was expected (or coupling = \"rigid\", which does not feed the deflection back "
       "into the chip)",
-      program.moves.moves[given_up.move].block + 1, no_equilibrium_text(given_up.reason), given_up.unsettled,
+      program.moves_in_part().moves[given_up.move].block + 1, no_equilibrium_text(given_up.reason), given_up.unsettled,
       given_up.readings);
 }
 

@@ -110,10 +110,11 @@ void DeflectedEngager::Impl::cut(std::size_t t, std::size_t k, const StampDeflec
 }
 
 DeflectedEngager::DeflectedEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
-                                   std::span<const Stamp> stamps, std::int32_t first_id)
+                                   std::span<const Stamp> stamps, std::int32_t first_id, const KnownRun* known)
     : impl_(new Impl{stock, blank, envelope, stamps, first_id}) {
   assert(!envelope.patches.empty());
-  if (!upright_run(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, tilted::ReadingRule{});
+  if (!upright_run(stamps, known))
+    impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, tilted::ReadingRule{});
 }
 DeflectedEngager::~DeflectedEngager() = default;
 

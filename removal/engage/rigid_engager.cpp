@@ -194,14 +194,14 @@ struct RigidEngager::Impl {
   std::optional<TiltedPath> tilted{};  ///< does all the work where the path is not upright
 
   Impl(Stock& stock_, const Stock& blank_, const EnvelopeGrid& envelope_, std::span<const Stamp> stamps_,
-       std::int32_t first_id_, int pitches)
+       std::int32_t first_id_, int pitches, const KnownRun* known)
       : stock(stock_),
         blank(blank_),
         envelope(envelope_),
         all(stamps_),
         first_id(first_id_),
         blocks(envelope_, stock_.voxel_mm(), stock_.band_mm()),
-        reader(envelope_, blocks, StampTips(stamps_), first_id_, stock_.voxel_mm(),
+        reader(envelope_, blocks, StampTips(stamps_, known), first_id_, stock_.voxel_mm(),
                stock_.max_mm().z() + stock_.band_mm(), pitches) {}
 
   void start_tiles();
@@ -336,9 +336,10 @@ void RigidEngager::Impl::cut_general(std::size_t t) {
 }
 
 RigidEngager::RigidEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope,
-                           std::span<const Stamp> stamps, std::int32_t first_id, int pitches)
-    : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches)) {
-  if (!upright_run(stamps)) impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, pitches, impl_->blocks);
+                           std::span<const Stamp> stamps, std::int32_t first_id, int pitches, const KnownRun* known)
+    : impl_(std::make_unique<Impl>(stock, blank, envelope, stamps, first_id, pitches, known)) {
+  if (!upright_run(stamps, known))
+    impl_->tilted.emplace(stock, blank, envelope, stamps, first_id, pitches, impl_->blocks);
 }
 RigidEngager::~RigidEngager() = default;
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "adapt/feed_cells.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "nc/interpreter.h"
 #include "tests/adapt/small_job.h"
 
@@ -114,7 +114,7 @@ TEST(Adapt, AskedFeedsAreReachedByTheControl) {
 nc::Interpretation moves_of(const machine::Job& job, const std::string& text) {
   Diagnostics diagnostics;
   const auto program = nc::read_program(SourceText("p.nc", text), diagnostics);
-  return nc::interpret(program, feedmodel::interpreter_options(job.machine, job.inch), diagnostics);
+  return nc::interpret(program, kinematics::interpreter_options(job.machine, job.inch), diagnostics);
 }
 
 TEST(Adapt, OnlyFeedsAndSplitsDiffer) {

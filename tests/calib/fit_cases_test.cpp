@@ -9,8 +9,7 @@
 
 #include "base/units.h"
 #include "calib/fit_feed.h"
-#include "feedmodel/control_options.h"
-#include "kinematics/rotary_options.h"
+#include "kinematics/control_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "tests/support/temp_folder.h"
@@ -45,7 +44,7 @@ class FitCase : public ::testing::Test {
     FeedRun out;
     out.program_name = program;
     out.program = nc::interpret(nc::read_program(SourceText::read(data_ + program), diagnostics),
-                                feedmodel::interpreter_options(machine, options), diagnostics);
+                                kinematics::interpreter_options(machine, options), diagnostics);
     out.trace = read_trace(csv, diagnostics);
     return out;
   }

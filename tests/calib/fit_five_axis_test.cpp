@@ -9,10 +9,9 @@
 #include "base/units.h"
 #include "calib/feed_accuracy.h"
 #include "calib/fit_feed.h"
-#include "feedmodel/control_options.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/control_options.h"
 #include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "test_paths.h"
@@ -42,7 +41,7 @@ FeedRun traced(const machine::Machine& machine, const std::string& text) {
   nc::InterpreterOptions options;
   options.rotary_axes = kinematics::rotary_options(machine);
   options.tool_offsets[1].length_mm = 80;
-  FeedRun run{"turns", nc::interpret(program, feedmodel::interpreter_options(machine, options), diagnostics), {}};
+  FeedRun run{"turns", nc::interpret(program, kinematics::interpreter_options(machine, options), diagnostics), {}};
   ServoTrace& trace = run.trace;
   trace.period_s = machine.control.period_s;
   trace.has_command = trace.has_actual = {true, true, true};

@@ -8,10 +8,9 @@
 #include "calib/feed_accuracy.h"
 #include "calib/fit_feed.h"
 #include "calib/traced_acceleration.h"
-#include "feedmodel/control_options.h"
-#include "feedmodel/joint_map.h"
+#include "kinematics/control_options.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/machine_moves.h"
-#include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "tests/support/temp_folder.h"
@@ -48,9 +47,9 @@ FeedRun control_run(const std::string& name, const machine::Machine& machine) {
   nc::InterpreterOptions options;
   options.rotary_axes = kinematics::rotary_options(machine);
   options.tool_offsets[1].length_mm = 80;
-  FeedRun run{name, nc::interpret(program, feedmodel::interpreter_options(machine, options), diagnostics),
+  FeedRun run{name, nc::interpret(program, kinematics::interpreter_options(machine, options), diagnostics),
               read_trace(tests::unpacked_data("linuxcnc5/" + name + "_t.csv"), diagnostics)};
-  if (feedmodel::has_rotary_motion(run.program, machine)) kinematics::place_moves(run.program, machine);
+  if (kinematics::has_rotary_motion(run.program, machine)) kinematics::place_moves(run.program, machine);
   return run;
 }
 

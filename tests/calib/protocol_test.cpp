@@ -7,8 +7,7 @@
 #include <set>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
-#include "kinematics/rotary_options.h"
+#include "kinematics/control_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "test_paths.h"
@@ -21,7 +20,7 @@ nc::Interpretation read_back(const ProtocolProgram& program, const machine::Mach
   const auto text = nc::read_program(SourceText(program.name, program.text), diagnostics);
   nc::InterpreterOptions options;
   options.rotary_axes = kinematics::rotary_options(machine);
-  auto moves = nc::interpret(text, feedmodel::interpreter_options(machine, options), diagnostics);
+  auto moves = nc::interpret(text, kinematics::interpreter_options(machine, options), diagnostics);
   EXPECT_TRUE(diagnostics.all().empty()) << program.name << ": " << to_string(diagnostics.all().front());
   return moves;
 }

@@ -1,7 +1,7 @@
 // The options of check that say how a program's language is read.
 #include <gtest/gtest.h>
 
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -31,7 +31,7 @@ TEST(LanguageOptions, DialectTakesEveryControlOfTheTable) {
   std::string names;
   for (const machine::ControlKind& kind : machine::control_kinds()) {
     const auto run = run_camber(folder, "check p.nc --dialect " + std::string(kind.name));
-    const nc::Dialect& dialect = feedmodel::dialect_of(kind);
+    const nc::Dialect& dialect = kinematics::dialect_of(kind);
     if (dialect.language == nc::LanguageId::iso)
       EXPECT_TRUE(has(run.out, dialect.fix_to_zero ? "cutting   2.0 mm" : "cutting   3.0 mm")) << kind.name;
     else

@@ -58,12 +58,12 @@ machine::Job read(const TempFolder& folder) {
 std::map<std::string, std::string> parts(const TempFolder& folder, const std::string& into, std::size_t longest_path,
                                          int rounds, bool keeps_programs) {
   const machine::Job job = read(folder);
-  const api::PartKey key = api::part_key(job, kSections, 0);
-  api::PartFiles store(folder / into, key);
+  const distribute::PartKey key = distribute::part_key(job, kSections, 0);
+  distribute::PartFiles store(folder / into, key);
   for (int round = 0; round <= rounds; ++round)
     for (std::size_t section = 0; section < kSections; ++section) {
       Diagnostics diagnostics;
-      api::SectionRun run(job, key, store, {}, diagnostics, longest_path);
+      distribute::SectionRun run(job, key, store, {}, diagnostics, longest_path);
       EXPECT_TRUE(round == 0 ? run.sweep(section) : run.solve(section, round));
       EXPECT_FALSE(diagnostics.has_errors());
       EXPECT_EQ(run.take_programs() != nullptr, keeps_programs);
@@ -78,7 +78,7 @@ void expect_same_parts(const std::string& job, int rounds, std::size_t files) {
   const TempFolder folder;
   write_all(folder, job);
   folder.write("original.nc", program(0.02));
-  const auto whole = parts(folder, "whole", api::SectionRun::kWholePath, rounds, true),
+  const auto whole = parts(folder, "whole", distribute::SectionRun::kWholePath, rounds, true),
              thin = parts(folder, "thin", kShort, rounds, false);
   ASSERT_EQ(whole.size(), files);
   ASSERT_EQ(thin.size(), files);
@@ -100,10 +100,10 @@ TEST(SectionsOfLongPrograms, KeepWhatLiesNearTheSection) {
   write_all(folder, kJob);
   const machine::Job job = read(folder);
   Diagnostics diagnostics;
-  simulate::SectionPrograms programs(job, {.longest_path = 20, .check = {}},
-                                     {.program = diagnostics, .original = diagnostics, .target = diagnostics});
+  distribute::SectionPrograms programs(job, {.longest_path = 20, .check = {}},
+                                       {.program = diagnostics, .original = diagnostics, .target = diagnostics});
   ASSERT_TRUE(programs.thin());
-  EXPECT_TRUE(programs.program().text.blocks.empty());
+  EXPECT_TRUE(programs.program().text().blocks.empty());
   const std::size_t all = programs.outline()->stamps;
   for (std::size_t section = 0; section < 9; ++section) {
     programs.go_to(section, 9);
@@ -113,7 +113,7 @@ TEST(SectionsOfLongPrograms, KeepWhatLiesNearTheSection) {
     const bool has_holes = section >= 6;  // a run of its own, all along the stock
     EXPECT_LT(kept, has_holes ? all + 1 : all * 5 / 6) << section;
   }
-  simulate::SectionPrograms whole(job, {}, {.program = diagnostics, .original = diagnostics, .target = diagnostics});
+  distribute::SectionPrograms whole(job, {}, {.program = diagnostics, .original = diagnostics, .target = diagnostics});
   EXPECT_FALSE(whole.thin());
   EXPECT_EQ(whole.path().stamps.size(), all);
 }

@@ -13,12 +13,10 @@ const char* const kTwoTools =
     "X30.\nX40.\n(CHAMFER)\nX50.\nM30\n";
 
 simulate::SimulatedProgram machined(const std::string& text) {
-  simulate::SimulatedProgram p;
   Diagnostics diagnostics;
-  p.text = nc::read_program(SourceText("two.nc", text), diagnostics);
-  p.moves = nc::interpret(p.text, {}, diagnostics);
-  p.selected = removal::selected_moves(p.moves, {});
-  for (std::uint32_t m = 0; m < p.moves.moves.size(); ++m) {
+  simulate::SimulatedProgram p{kinematics::open_program(SourceText("two.nc", text), {}, {}, diagnostics)};
+  p.selected = removal::selected_moves(p.moves_in_part(), {});
+  for (std::uint32_t m = 0; m < p.moves_in_part().moves.size(); ++m) {
     removal::Stamp stamp;
     stamp.move = m;
     p.path.stamps.push_back(stamp);
@@ -72,8 +70,9 @@ TEST(Finishing, GoesByToolLinesAndComments) {
 
 TEST(Finishing, RefusesCutterRadiusCompensation) {
   const auto program = machined("G21 G90\nG0 X0. Y0.\nG41 D1 X5.\nG1 Y10. F100\nG40 X0.\nM30\n");
-  auto moved = program;
-  for (auto& s : moved.moves.states) s.cutter_radius = true;
+  nc::Interpretation moves = program.commanded();
+  for (auto& s : moves.states) s.cutter_radius = true;
+  const simulate::SimulatedProgram moved{kinematics::MachineProgram(program.text(), std::move(moves))};
   Diagnostics diagnostics;
   check_compensated(moved, {false, false, true, false}, diagnostics);
   ASSERT_EQ(diagnostics.all().size(), 1u);
@@ -88,8 +87,9 @@ TEST(Finishing, RefusesCutterRadiusCompensation) {
 TEST(Finishing, SaysWhereNoMoveHasWordsOfItsOwn) {
   const auto program = machined(
       "G21 G90 G17 G54\nT1 M6\nS3000 M3\nG0 X0. Y0.\n#1=0\nWHILE [#1 LT 3] DO1\nG1 X[#1+1] F300\n#1=#1+1\nEND1\nM30\n");
-  std::vector<bool> lines(program.moves.moves.size());
-  for (std::size_t m = 0; m < lines.size(); ++m) lines[m] = program.moves.moves[m].kind == nc::MoveKind::linear;
+  std::vector<bool> lines(program.moves_in_part().moves.size());
+  for (std::size_t m = 0; m < lines.size(); ++m)
+    lines[m] = program.moves_in_part().moves[m].kind == nc::MoveKind::linear;
   Diagnostics diagnostics;
   check_compensated(program, lines, diagnostics);
   ASSERT_EQ(diagnostics.all().size(), 1u);

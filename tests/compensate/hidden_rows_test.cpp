@@ -56,8 +56,7 @@ TEST(HiddenRows, OffsetsAreWhereTheToolIsBesideTheProgrammedPath) {
   std::vector<bool> selected;
   for (const nc::Move& move : moves.moves) selected.push_back(move.kind == nc::MoveKind::linear);
   const ShiftPath path(moves, selected, 0.4);
-  simulate::SimulatedProgram machine;
-  machine.moves = moves;
+  simulate::SimulatedProgram machine{kinematics::MachineProgram({}, moves)};
   const auto offset_at = [](double y) { return Vec3(0, 0.003, y > -3.4 ? 0.02 : -0.01); };
   for (std::uint32_t m = 0; m < moves.moves.size(); ++m) {
     if (!selected[m]) continue;
@@ -80,14 +79,15 @@ TEST(HiddenRows, OffsetsAreWhereTheToolIsBesideTheProgrammedPath) {
 
 /// In every round: the surface shows what the second row cut, the first one's own error is added to it.
 TEST(HiddenRows, WhatARowWouldLeaveIsObservedBesideWhatTheSurfaceShows) {
-  simulate::SimulatedProgram given;
-  given.moves = moves_of(rows_program(2, 0.3, 0, 0));
+  simulate::SimulatedProgram given{kinematics::MachineProgram({}, moves_of(rows_program(2, 0.3, 0, 0)))};
   std::vector<bool> selected;
-  for (const nc::Move& move : given.moves.moves) selected.push_back(move.kind == nc::MoveKind::linear);
-  const ShiftPath path(given.moves, selected, 0.4);
+  for (const nc::Move& move : given.moves_in_part().moves) selected.push_back(move.kind == nc::MoveKind::linear);
+  const ShiftPath path(given.moves_in_part(), selected, 0.4);
   const auto move_near = [&](double x, double y) {
     std::uint32_t m = 0;
-    while (!selected[m] || (nc::point_at(given.moves, given.moves.moves[m], 0.5) - Vec3(x, y, -1.2)).norm() > 0.1) ++m;
+    while (!selected[m] ||
+           (nc::point_at(given.moves_in_part(), given.moves_in_part().moves[m], 0.5) - Vec3(x, y, -1.2)).norm() > 0.1)
+      ++m;
     return m;
   };
   const std::uint32_t first = move_near(2.5, -3.5), second = move_near(2.5, -3.2);
@@ -95,7 +95,7 @@ TEST(HiddenRows, WhatARowWouldLeaveIsObservedBesideWhatTheSurfaceShows) {
     removal::Stamp stamp;
     stamp.move = m;
     stamp.fraction = 0.5;
-    stamp.pose.tip_mm = nc::point_at(given.moves, given.moves.moves[m], 0.5);
+    stamp.pose.tip_mm = nc::point_at(given.moves_in_part(), given.moves_in_part().moves[m], 0.5);
     given.path.stamps.push_back(stamp);
   }
   const std::vector<simulate::PathFraction> target{{first, 0.5f}, {second, 0.5f}};
@@ -120,7 +120,7 @@ TEST(HiddenRows, WhatARowWouldLeaveIsObservedBesideWhatTheSurfaceShows) {
   EXPECT_TRUE(observe(path, job, given, given, {}, surface, target).hidden.empty()) << "without what bends it";
 
   // What a first cut of the second row left last counts as not cut: the first row should have.
-  std::vector<bool> first_cuts(given.moves.moves.size(), false);
+  std::vector<bool> first_cuts(given.moves_in_part().moves.size(), false);
   first_cuts[second] = true;
   const Observed repeated = observe(path, job, given, given, {}, surface, target, {}, first_cuts);
   for (const Observation& o : repeated.points) EXPECT_EQ(o.place.lower, path.find(first, 0.5).lower);

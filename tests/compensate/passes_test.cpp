@@ -10,16 +10,16 @@ namespace {
 
 simulate::SimulatedProgram read(const std::string& text) {
   Diagnostics diagnostics;
-  simulate::SimulatedProgram out;
-  out.text = nc::read_program(SourceText("p.nc", text), diagnostics);
-  out.moves = nc::interpret(out.text, {.inch = false}, diagnostics);
+  simulate::SimulatedProgram out{
+      kinematics::open_program(SourceText("p.nc", text), {}, {.given = {.inch = false}}, diagnostics)};
   EXPECT_FALSE(diagnostics.has_errors());
   return out;
 }
 
 std::vector<bool> cuts_of(const simulate::SimulatedProgram& p) {
   std::vector<bool> out;
-  for (const nc::Move& m : p.moves.moves) out.push_back(m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc);
+  for (const nc::Move& m : p.moves_in_part().moves)
+    out.push_back(m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc);
   return out;
 }
 
@@ -53,7 +53,7 @@ TEST(Passes, LeaveTheDepthOfTheSingleCutAndHalfATolerance) {
 TEST(Passes, ErrorsAreThoseOfTheRunThatMakesTheSurface) {
   const simulate::SimulatedProgram given = read(kRows);
   const std::vector<bool> cuts = cuts_of(given);
-  const ShiftPath path(given.moves, cuts, 3);
+  const ShiftPath path(given.moves_in_part(), cuts, 3);
   std::vector<Observation> observations;
   std::vector<double> left;
   for (std::uint32_t m = 0; m < cuts.size(); ++m) {
@@ -76,17 +76,18 @@ TEST(Passes, ErrorsAreThoseOfTheRunThatMakesTheSurface) {
 TEST(Passes, TheGivenMovesStandInTheRepeatedProgramAsTheyWere) {
   const simulate::SimulatedProgram given = read(kRows);
   const std::vector<bool> cuts = cuts_of(given);
-  const auto found = pass_runs(given, cuts, ShiftPath(given.moves, cuts, 3), {}, {});
-  const nc::Emission same = nc::emit_edits(given.text, given.moves, {}, {});
+  const auto found = pass_runs(given, cuts, ShiftPath(given.moves_in_part(), cuts, 3), {}, {});
+  const nc::Emission same = nc::emit_edits(given.text(), given.moves_in_part(), {}, {});
   const std::vector<std::size_t> chosen{1};
   const nc::RepeatedText text = with_first_cuts(given, found, chosen, same);
   const simulate::SimulatedProgram twice = read(text.text);
   std::uint32_t wrong = 0;
-  const auto moves = moves_in_repeated(given.moves, twice.moves, text, wrong);
+  const auto moves = moves_in_repeated(given.moves_in_part(), twice.moves_in_part(), text, wrong);
   ASSERT_TRUE(moves.has_value()) << text.text;
-  ASSERT_EQ(moves->size(), given.moves.moves.size());
-  EXPECT_EQ(moves->back(), twice.moves.moves.size() - 1);
-  EXPECT_EQ(twice.moves.moves.size(), given.moves.moves.size() + 4) << "a cut and three rapids\n" << text.text;
+  ASSERT_EQ(moves->size(), given.moves_in_part().moves.size());
+  EXPECT_EQ(moves->back(), twice.moves_in_part().moves.size() - 1);
+  EXPECT_EQ(twice.moves_in_part().moves.size(), given.moves_in_part().moves.size() + 4) << "a cut and three rapids\n"
+                                                                                        << text.text;
 }
 
 TEST(Passes, RunsThatLeaveAnotherModalStateBehindAreFound) {
@@ -95,17 +96,16 @@ TEST(Passes, RunsThatLeaveAnotherModalStateBehindAreFound) {
       "G21 G90 G17 G91.1\nT1 M6\nG54 S3000 M3\nG0 X0 Y0 Z5.\nZ-1.\nG3 X10. Y0 I5. J0 F300\n"
       "G90.1 G3 X20. Y0 I15. J0\nG0 Z5.\nM30\n");
   const std::vector<bool> cuts = cuts_of(given);
-  const auto found = pass_runs(given, cuts, ShiftPath(given.moves, cuts, 3), {}, {});
+  const auto found = pass_runs(given, cuts, ShiftPath(given.moves_in_part(), cuts, 3), {}, {});
   ASSERT_EQ(found.size(), 1u);
-  const nc::RepeatedText text =
-      with_first_cuts(given, found, std::vector<std::size_t>{0}, nc::emit_edits(given.text, given.moves, {}, {}));
+  const nc::RepeatedText text = with_first_cuts(given, found, std::vector<std::size_t>{0},
+                                                nc::emit_edits(given.text(), given.moves_in_part(), {}, {}));
   Diagnostics diagnostics;
-  simulate::SimulatedProgram twice;
-  twice.text = nc::read_program(SourceText("p.nc", text.text), diagnostics);
-  twice.moves = nc::interpret(twice.text, {.inch = false}, diagnostics);
+  const simulate::SimulatedProgram twice{
+      kinematics::open_program(SourceText("p.nc", text.text), {}, {.given = {.inch = false}}, diagnostics)};
   std::uint32_t wrong = 0;
-  EXPECT_FALSE(moves_in_repeated(given.moves, twice.moves, text, wrong).has_value());
-  EXPECT_EQ(given.moves.moves[wrong].block, 5u);
+  EXPECT_FALSE(moves_in_repeated(given.moves_in_part(), twice.moves_in_part(), text, wrong).has_value());
+  EXPECT_EQ(given.moves_in_part().moves[wrong].block, 5u);
 }
 
 TEST(Passes, SayWhatCannotBeCutTwice) {

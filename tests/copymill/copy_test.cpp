@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "removal/engagement.h"
@@ -83,7 +83,7 @@ removal::Stock cut_by_program(const machine::Job& job, const std::string& text) 
   const simulate::SimulatedProgram program =
       simulate::simulate_motion(SourceText("out.nc", text), job, {}, diagnostics);
   removal::Stock stock = simulate::job_stock(job, 4, [](const Vec3&, const Vec3&) {});
-  simulate::sweep_path(stock, job, removal::nominal_path(program.moves, program.selected, program.path), 0);
+  simulate::sweep_path(stock, job, removal::nominal_path(program.moves_in_part(), program.selected, program.path), 0);
   return stock;
 }
 

@@ -1,5 +1,5 @@
 // How the kinds of control differ along the path: each fact, for every row of the table.
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 
 #include <gtest/gtest.h>
 
@@ -30,15 +30,15 @@ std::vector<Segment> segments_of(const nc::Interpretation& program, const machin
 TEST(ControlOptions, ReadProgramsInTheControlsDialect) {
   for (const ControlKind& kind : machine::control_kinds()) {
     SCOPED_TRACE(kind.name);
-    EXPECT_EQ(dialect_of(kind).name, kind.nc_dialect);
+    EXPECT_EQ(kinematics::dialect_of(kind).name, kind.nc_dialect);
     nc::InterpreterOptions given{.inch = true, .skip_slash_blocks = true};
     given.dialect = *nc::dialect_named("linuxcnc");
-    const nc::InterpreterOptions options = interpreter_options(machine_with(kind), given);
+    const nc::InterpreterOptions options = kinematics::interpreter_options(machine_with(kind), given);
     EXPECT_EQ(options.dialect->name, kind.nc_dialect);
-    EXPECT_EQ(options.dwell_p_is_ms, dialect_of(kind).dwell_p_is_ms);
+    EXPECT_EQ(options.dwell_p_is_ms, kinematics::dialect_of(kind).dwell_p_is_ms);
     EXPECT_EQ(options.inch, true);
     EXPECT_TRUE(options.skip_slash_blocks);
-    EXPECT_EQ(interpreter_options(machine_with(kind), std::optional<bool>()).inch, std::nullopt);
+    EXPECT_EQ(kinematics::interpreter_options(machine_with(kind), std::optional<bool>()).inch, std::nullopt);
   }
 }
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/units.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"
 #include "tests/feedmodel/rotary_programs.h"
 #include "tests/support/accuracy_figure.h"
@@ -46,10 +46,10 @@ TEST(FiveAxis, AFixedTipTiltsInTheTimeOfTheLinearAxisThatFollowsIt) {
   machine::Machine m = fast_machine("table_ac_linuxcnc", 1e6);
   m.axis[1].max_velocity_mm_per_s = 30;
   const auto program = moves_of(kProlog + "G43.4 H1\nG0 X0 Y0 Z100\nG1 A-30 F1000000\n", m);
-  const JointMap map(m, program);
+  const kinematics::JointMap map(m, program);
   const Turn turn{.tip_control = true, .tool_length_mm = kToolMm};
   const auto y = [&](double a_deg) {
-    return map.joints({{0, 0, 100}, {rad_from_deg(a_deg), 0, 0}}, turn).linear_mm.y();
+    return joints_of(map, {{0, 0, 100}, {rad_from_deg(a_deg), 0, 0}}, turn).linear_mm.y();
   };
   // In pieces of a degree, each at the speed of its fastest end.
   EXPECT_NEAR(cutting_time_s(program, m), std::abs(y(-30) - y(0)) / 30, 0.01 * std::abs(y(-30) - y(0)) / 30);

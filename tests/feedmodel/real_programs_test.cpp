@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
 #include "feedmodel/timed_path.h"
+#include "kinematics/control_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "test_paths.h"
@@ -55,7 +55,7 @@ std::optional<nc::Interpretation> interpreted(const fs::path& path, const machin
   try {
     Diagnostics diagnostics;
     const nc::Program text = nc::read_program(SourceText::read(path), diagnostics);
-    nc::Interpretation program = nc::interpret(text, interpreter_options(m, std::nullopt), diagnostics);
+    nc::Interpretation program = nc::interpret(text, kinematics::interpreter_options(m, std::nullopt), diagnostics);
     diagnostics.throw_if_errors();
     return program;
   } catch (const InputError&) {

@@ -3,11 +3,10 @@
 #include <string>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
-#include "feedmodel/joint_map.h"
 #include "feedmodel/plan.h"
+#include "kinematics/control_options.h"
+#include "kinematics/joint_map.h"
 #include "kinematics/machine_moves.h"
-#include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "test_paths.h"
 #include "tests/kinematics/machines.h"
@@ -33,9 +32,9 @@ inline nc::Interpretation moves_of(const SourceText& source, const machine::Mach
   nc::InterpreterOptions options;
   options.rotary_axes = kinematics::rotary_options(machine);
   options.tool_offsets[1].length_mm = kToolMm;
-  nc::Interpretation moves = nc::interpret(program, interpreter_options(machine, options), diagnostics);
+  nc::Interpretation moves = nc::interpret(program, kinematics::interpreter_options(machine, options), diagnostics);
   diagnostics.throw_if_errors();
-  if (has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
+  if (kinematics::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
   return moves;
 }
 

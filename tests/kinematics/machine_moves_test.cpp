@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "kinematics/control_options.h"
 #include "kinematics/machine_moves.h"
 #include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "tests/kinematics/machines.h"
 

@@ -1,5 +1,6 @@
 // The moves of a program as the tool goes along them in the part's frame.
 #include "kinematics/part_path.h"
+#include "kinematics/machine_program.h"
 
 #include <cmath>
 #include <string>
@@ -9,9 +10,8 @@
 #include <Eigen/Geometry>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "tests/kinematics/machines.h"
 
@@ -26,9 +26,9 @@ nc::Interpretation moves_of(const machine::Machine& machine, const std::string& 
   options.rotary_axes = rotary_options(machine);
   const auto text = nc::read_program(
       SourceText("p.nc", "G21 G90 G94\nG10 L2 P1 X10 Y-20 Z-50\nG10 L1 P1 R90\nT1 M6\nG54\n" + blocks), found);
-  nc::Interpretation out = nc::interpret(text, feedmodel::interpreter_options(machine, options), found);
+  nc::Interpretation out = nc::interpret(text, kinematics::interpreter_options(machine, options), found);
   for (const auto& d : found.all()) EXPECT_NE(d.severity, Severity::error) << d.message;
-  place_lines(out, machine);
+  out = MachineProgram({}, out, machine).moves_in_program();
   return out;
 }
 

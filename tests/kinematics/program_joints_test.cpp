@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "base/units.h"
-#include "kinematics/rotary_options.h"
+#include "kinematics/control_options.h"
 #include "kinematics/travel_check.h"
 #include "nc/interpreter.h"
 #include "tests/kinematics/machines.h"

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "base/diagnostics.h"
+#include "kinematics/control_options.h"
 #include "kinematics/machine_moves.h"
 #include "kinematics/pose_track.h"
 #include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
 #include "nc/emit.h"
 #include "nc/interpreter.h"

@@ -7,9 +7,9 @@
 #include <Eigen/Geometry>
 
 #include "base/units.h"
+#include "kinematics/control_options.h"
 #include "kinematics/pose_track.h"
 #include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "kinematics/travel_check.h"
 #include "nc/interpreter.h"
 #include "tests/kinematics/machines.h"

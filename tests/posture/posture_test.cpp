@@ -10,9 +10,9 @@
 #include <Eigen/Geometry>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
+#include "kinematics/machine_program.h"
 #include "kinematics/program_joints.h"
-#include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"
 #include "posture/stock_obstacle.h"
 #include "removal/cutter.h"
@@ -209,7 +209,7 @@ class PostureInATrough : public ::testing::Test {
     nc::InterpreterOptions options;
     options.inch = false;
     options.rotary_axes = kinematics::rotary_options(job_.machine);
-    options = feedmodel::interpreter_options(job_.machine, options);
+    options = kinematics::interpreter_options(job_.machine, options);
     program_ = nc::read_program(SourceText("p.nc", text), diagnostics);
     moves_ = nc::interpret(program_, options, diagnostics);
     diagnostics.throw_if_errors();
@@ -221,11 +221,11 @@ class PostureInATrough : public ::testing::Test {
     nc::InterpreterOptions options;
     options.inch = false;
     options.rotary_axes = kinematics::rotary_options(job_.machine);
-    options = feedmodel::interpreter_options(job_.machine, options);
+    options = kinematics::interpreter_options(job_.machine, options);
     const nc::Program program = nc::read_program(SourceText("out.nc", text), diagnostics);
     nc::Interpretation moves = nc::interpret(program, options, diagnostics);
     diagnostics.throw_if_errors();
-    kinematics::place_lines(moves, job_.machine);
+    moves = kinematics::MachineProgram({}, moves, job_.machine).moves_in_program();
     kinematics::ProgramJoints joints(job_.machine, moves);
     std::vector<ToolPose> out;
     while (!joints.done()) {

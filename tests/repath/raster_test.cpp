@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "repath/raster_text.h"
 
 using namespace camber;
@@ -377,14 +377,14 @@ TEST(RasterText, IsReadWithoutADiagnosticByEveryControl) {
   const std::vector<std::vector<Vec3>> chains{{{0, 0, 1}, {4, 0, 1.5}, {4, 0.25, 0}}};
   for (const machine::ControlKind& kind : machine::control_kinds()) {
     SCOPED_TRACE(kind.name);
-    program.dialect = feedmodel::dialect_of(kind);
+    program.dialect = kinematics::dialect_of(kind);
     const std::string text = raster_text(program, chains);
     EXPECT_EQ(text.find("O0001") != std::string::npos, program.dialect.has_program_number);
     machine::Machine machine;
     machine.control.kind = kind;
     Diagnostics diagnostics;
     const auto read = nc::read_program(SourceText("raster.nc", text), diagnostics);
-    const auto moves = nc::interpret(read, feedmodel::interpreter_options(machine, std::nullopt), diagnostics);
+    const auto moves = nc::interpret(read, kinematics::interpreter_options(machine, std::nullopt), diagnostics);
     EXPECT_TRUE(diagnostics.all().empty()) << to_string(diagnostics.all().front());
     ASSERT_EQ(moves.moves.size(), 7u);  // to the clearance plane, over the start, down, three cuts less one, up
     EXPECT_EQ(moves.moves[5].end_mm, Vec3(4, 0.25, 0));

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 #include "nc/program.h"
 #include "repath/contour.h"
 #include "test_paths.h"
@@ -43,7 +43,7 @@ TEST(RealContour, NoProgramHasContourErrorsOfMillimetres) {
     nc::InterpreterOptions options;
     options.inch = false;
     const nc::Program program = nc::read_program(SourceText::read(path), diagnostics);
-    const auto moves = nc::interpret(program, feedmodel::interpreter_options(m, options), diagnostics);
+    const auto moves = nc::interpret(program, kinematics::interpreter_options(m, options), diagnostics);
     const ContourFigures figures = contour_figures(moves, moves, m);
     printf("%-32s %9.1f s, contour %.3f mm at most\n", path.filename().c_str(), figures.time_s, figures.contour_max_mm);
     EXPECT_LT(figures.contour_max_mm, kLargestMm) << path;
@@ -56,7 +56,8 @@ TEST(RealContour, AWayBackIsNoContourError) {
   const nc::Program program =
       nc::read_program(SourceText("back.nc", "G21 G90 G17\nG0 X0 Y0 Z1\nG1 Z-1 F900\nZ5\nZ-1\nX20\nM2\n"), diagnostics);
   const machine::Machine m = lagging_machine();
-  const auto moves = nc::interpret(program, feedmodel::interpreter_options(m, std::optional<bool>(false)), diagnostics);
+  const auto moves =
+      nc::interpret(program, kinematics::interpreter_options(m, std::optional<bool>(false)), diagnostics);
   // 15 mm/s at a gain of 33 /s lag by 0.45 mm; a square corner is cut by less than that
   EXPECT_LT(contour_figures(moves, moves, m).contour_max_mm, 0.45);
 }

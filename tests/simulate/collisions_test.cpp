@@ -54,7 +54,9 @@ SimulatedProgram turned(SimulatedProgram program, const Mat3& turn) {
     s.pose = pose_of_frame(turn * s.pose.tip_mm, turn.col(2), turn.col(0));
     s.feed_per_tooth_mm = turn * s.feed_per_tooth_mm;
   }
-  for (nc::Move& m : program.moves.moves) m.start_mm = turn * m.start_mm, m.end_mm = turn * m.end_mm;
+  nc::Interpretation moves = program.commanded();
+  for (nc::Move& m : moves.moves) m.start_mm = turn * m.start_mm, m.end_mm = turn * m.end_mm;
+  static_cast<kinematics::MachineProgram&>(program) = kinematics::MachineProgram(program.text(), std::move(moves));
   return program;
 }
 
@@ -63,7 +65,7 @@ std::string text_of(const SimulatedProgram& program, const std::vector<Collision
   constexpr const char* kParts[] = {"cutter", "shank", "holder"};
   std::string out;
   for (const Collision& c : found)
-    out += fmt::format("line {}: {}{}\n", program.moves.moves[c.move].block + 1,
+    out += fmt::format("line {}: {}{}\n", program.moves_in_part().moves[c.move].block + 1,
                        kParts[static_cast<std::size_t>(c.part)], c.rapid ? ", rapid" : "");
   return out;
 }
@@ -140,7 +142,7 @@ SimulatedProgram tilting(const machine::Job& job, const Vec3& tip, double from_d
   SimulatedProgram program = program_of(job, lines);
   program.path = {};
   std::uint32_t move = 0;
-  while (program.moves.moves[move].kind != nc::MoveKind::linear) ++move;
+  while (program.moves_in_part().moves[move].kind != nc::MoveKind::linear) ++move;
   for (int i = 0; i <= n; ++i) {
     removal::Stamp s;
     s.t_s = 0.01 * i;

@@ -148,10 +148,10 @@ TEST(Contour, NominalStampsCoverEveryCornerThatTheAxesCut) {
   const SimulatedProgram program = motion(
       job,
       "G21 G90 G17 G64\nT1 M6\nS3000 M3\nG0 X-20 Y0 Z5\nG0 Z-2\nG1 X0 F600\nG1 Y20\nG2 X5 Y25 I5 J0\nG0 Z5\nM30\n");
-  const removal::StampPath nominal = removal::nominal_path(program.moves, program.selected, program.path);
+  const removal::StampPath nominal = removal::nominal_path(program.moves_in_part(), program.selected, program.path);
   double corner = 1e9, end = 1e9, start = 1e9;
   for (const auto& s : nominal.stamps) {
-    const Vec3 there = nc::point_at(program.moves, program.moves.moves[s.move], s.fraction);
+    const Vec3 there = nc::point_at(program.moves_in_part(), program.moves_in_part().moves[s.move], s.fraction);
     EXPECT_LT((s.pose.tip_mm - there).norm(), 1e-9) << "on the programmed path";
     corner = std::min(corner, (s.pose.tip_mm - Vec3(0, 0, -2)).norm());
     start = std::min(start, (s.pose.tip_mm - Vec3(-20, 0, -2)).norm());

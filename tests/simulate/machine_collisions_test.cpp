@@ -8,8 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "base/units.h"
-#include "feedmodel/control_options.h"
-#include "kinematics/rotary_options.h"
+#include "kinematics/control_options.h"
 #include "nc/interpreter.h"
 #include "simulate/machine_solids.h"
 #include "tests/support/cutting.h"
@@ -48,7 +47,7 @@ Program program_of(const machine::Job& job, const std::string& blocks) {
   nc::InterpreterOptions options;
   options.rotary_axes = kinematics::rotary_options(job.machine);
   Program out{nc::read_program(SourceText("p.nc", "G21 G90 G94\nT1 M6\nS3000 M3\n" + blocks + "M30\n"), found), {}};
-  out.moves = nc::interpret(out.text, feedmodel::interpreter_options(job.machine, options), found);
+  out.moves = nc::interpret(out.text, kinematics::interpreter_options(job.machine, options), found);
   for (const auto& d : found.all()) EXPECT_NE(d.severity, Severity::error) << d.message;
   return out;
 }

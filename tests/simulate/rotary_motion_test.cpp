@@ -1,6 +1,5 @@
 // Programs with rotary motion, from text to loads: the same path on the part is the same cut, on any machine and in any
 // coordinates.
-#include "simulate/rotary_motion.h"
 
 #include <cmath>
 #include <string>
@@ -152,8 +151,8 @@ TEST(RotaryMotion, WithoutTiltThePathIsTheOneOfThreeAxes) {
   // A program that never turned would be read as one of three axes: this one turns its table when all is cut.
   const Cut three = cut_of(job, kStart + "G43 H1\nG0 X9 Y0.5 Z5\n" + rest + "M30\n"),
             five = cut_of(job, kStart + "G43.4 H1\nG0 X9 Y0.5 Z5 B0 C0\n" + rest + "G0 C90\nM30\n");
-  EXPECT_FALSE(three.program.rotary);
-  ASSERT_TRUE(five.program.rotary);
+  EXPECT_FALSE(three.program.turns());
+  ASSERT_TRUE(five.program.turns());
   EXPECT_TRUE(removal::all_upright(five.program.path.stamps));
   ASSERT_EQ(five.program.path.stamps.size(), three.program.path.stamps.size());
   for (std::size_t k = 0; k < three.program.path.stamps.size(); ++k) {
@@ -177,7 +176,7 @@ TEST(RotaryMotion, ATipThatStandsStillHasStampsOfEveryBlock) {
   Diagnostics found;
   const SimulatedProgram program = simulate_motion(SourceText("p.nc", text + "G0 Z20\nM30\n"), job, {}, found);
   std::map<std::uint32_t, std::size_t> of_block;
-  for (const removal::Stamp& stamp : program.path.stamps) ++of_block[program.moves.moves[stamp.move].block];
+  for (const removal::Stamp& stamp : program.path.stamps) ++of_block[program.moves_in_part().moves[stamp.move].block];
   ASSERT_GE(of_block.size(), 9u);
   double last = -1;
   for (const removal::Stamp& stamp : program.path.stamps) {

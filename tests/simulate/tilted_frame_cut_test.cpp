@@ -157,7 +157,7 @@ TEST(TiltedFrameCut, IsTheCutOfTheSamePathInEveryOtherWriting) {
     const machine::Job job = framed_job(name);
     const auto text = [&](Written how) { return Writer(job.machine, angles, how).program(); };
     const SimulatedProgram tilted = motion_of(job, without_arc(text(Written::tilted)));
-    ASSERT_TRUE(tilted.rotary);
+    ASSERT_TRUE(tilted.turns());
     {
       SCOPED_TRACE("tip control");
       expect_one_cut(job, motion_of(job, text(Written::tip)), tilted);
@@ -179,18 +179,18 @@ TEST(TiltedFrameCut, ArcsLieInThePlaneOfTheFrame) {
   const Vec3 centre = writer.in_part({1, 1, 0});
   std::size_t around = 0;
   for (const removal::Stamp& stamp : program.path.stamps) {
-    const nc::Move& move = program.moves.moves[stamp.move];
+    const nc::Move& move = program.moves_in_part().moves[stamp.move];
     if (move.arc == nc::Move::kNoArc || stamp.fraction <= 0 || stamp.fraction >= 1) continue;
     ++around;
     EXPECT_NEAR((stamp.pose.tip_mm - centre).norm(), 1, 1e-6);
     EXPECT_NEAR((stamp.pose.tip_mm - centre).dot(writer.axis()), 0, 1e-6);
   }
   EXPECT_GT(around, 10u);
-  const nc::Interpretation& text = program.text_moves();
+  const nc::Interpretation& text = program.moves_in_program();
   for (std::uint32_t m = 0; m < text.moves.size(); ++m) {
     const nc::Move& move = text.moves[m];
     if (text.state_of(move).work_frame != nc::WorkFrame::tilted || move.open_axes == 7) continue;
-    const auto words = program.part_path()->text_mm(m, program.moves.moves[m].end_mm);
+    const auto words = program.part_path()->text_mm(m, program.moves_in_part().moves[m].end_mm);
     ASSERT_TRUE(words);
     EXPECT_LT((*words - move.end_mm).norm(), 1e-9) << move.block + 1;
   }

@@ -4,12 +4,12 @@
 #include <limits>
 
 namespace camber::removal::upright {
-StampTips::StampTips(std::span<const Stamp> stamps) : stamps_(stamps) {
+StampTips::StampTips(std::span<const Stamp> stamps, const KnownRun* known) : stamps_(stamps) {
   if (stamps.empty()) return;
-  if (const KnownRun* run = known_run(stamps)) {
-    min_mm_ = run->min_mm;
-    step_mm_ = tip_step_mm(run->max_mm - run->min_mm);
-    known_ = run->tips;
+  if (known) {
+    min_mm_ = known->min_mm;
+    step_mm_ = tip_step_mm(known->max_mm - known->min_mm);
+    known_ = known->tips;
     return;
   }
   min_mm_ = Vec3::Constant(std::numeric_limits<double>::infinity());

@@ -37,8 +37,9 @@ class TipView {
 /// Stores tips as integer steps, a billionth of their range each; twelve bytes per tip.
 class StampTips {
  public:
-  /// For a whole run, which must outlive the object: view() has the exact tips. A known_run() brings its own.
-  explicit StampTips(std::span<const Stamp> stamps);
+  /// For a whole run, which must outlive the object: view() has the exact tips. `known` (may be null) brings its
+  /// own steps.
+  explicit StampTips(std::span<const Stamp> stamps, const KnownRun* known = nullptr);
   /// For a run that grows, with tips in this box: view() has them to a billionth of the box. Space for `expected` tips
   /// is reserved, so that no append() takes longer than another.
   StampTips(const Vec3& min_mm, const Vec3& max_mm, std::size_t expected);

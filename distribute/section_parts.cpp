@@ -1,7 +1,9 @@
 // Parts of sections as bytes.
-#include "simulate/section_parts.h"
+#include "distribute/section_parts.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
+
+using namespace simulate;
 namespace {
 
 using removal::Region;
@@ -163,4 +165,4 @@ OwnSolution OwnSolution::read(ByteReader& in) {
   return out;
 }
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

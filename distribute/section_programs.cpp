@@ -1,4 +1,4 @@
-#include "simulate/section_programs.h"
+#include "distribute/section_programs.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,9 +6,10 @@
 
 #include "removal/cutter.h"
 #include "removal/nominal_path.h"
-#include "removal/stamp_sink.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
+
+using namespace simulate;
 
 using machine::Job;
 using removal::Region;
@@ -21,16 +22,9 @@ namespace {
 constexpr std::size_t kLongestText = 200'000;
 constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();
 
-void give_up_text(SimulatedProgram& program) {
-  nc::Program none{
-      .source = SourceText(program.text.source.name(), {}), .blocks = {}, .words = {}, .macro = {}, .parts = {}};
-  std::swap(program.text, none);  // a string that is assigned a short one keeps its memory
-}
-
 /// Goes along the path; of it the program keeps the runs.
 void follow_path(SimulatedProgram& program, const Job& job, const removal::StampSink& sink) {
-  const removal::StampSinkScope scope(sink);
-  time_path(program, job, {});
+  time_path(program, job, {}, sink);
   program.path.stamps = {};
 }
 
@@ -43,7 +37,7 @@ struct Outlines {
 /// Keeps the whole path where it has no more than `longest` stamps. `target`: the nominal path is wanted.
 Outlines time_program(SimulatedProgram& program, const Job& job, std::size_t longest, bool target) {
   Outlines out;
-  if (program.rotary || longest == kWhole) {
+  if (program.turns() || longest == kWhole) {
     time_path(program, job, {});
     out.whole = true;
     return out;
@@ -58,7 +52,7 @@ Outlines time_program(SimulatedProgram& program, const Job& job, std::size_t lon
       stamps.push_back(stamp);
     } else {
       if (out.whole && target) {
-        follower.emplace(program.moves, program.selected, nullptr, outline_nominal);
+        follower.emplace(program.moves_in_part(), program.selected, nullptr, outline_nominal);
         for (const ToolRun& r : out.path.runs)
           for (std::size_t k = r.from; k < r.from + r.count; ++k) follower->add(r, stamps[k]);
       }
@@ -142,8 +136,8 @@ class BlockKeeper {
 SectionPrograms::SectionPrograms(const Job& job, const SectionProgramsOptions& options, const SetupFindings& findings)
     : job_(job) {
   const auto give_up = [&](SimulatedProgram& program) {
-    if (options.longest_path < kWhole && program.text.blocks.size() > std::min(kLongestText, options.longest_path))
-      give_up_text(program);
+    if (options.longest_path < kWhole && program.text().blocks.size() > std::min(kLongestText, options.longest_path))
+      program.give_up_text();
   };
   read_.program = read_moves(SourceText::read(job.program), job, findings.program);
   if (options.check) options.check(read_.program);
@@ -188,7 +182,7 @@ void SectionPrograms::go_to(std::size_t section, std::size_t sections) {
   };
   BlockKeeper keep = keeper(thin_->path), keep_nominal = keeper(thin_->nominal);
   const auto target = [&](SimulatedProgram& program, BlockKeeper& keep_path) {
-    removal::NominalFollower follower(program.moves, program.selected, nullptr, std::ref(keep_nominal));
+    removal::NominalFollower follower(program.moves_in_part(), program.selected, nullptr, std::ref(keep_nominal));
     follow_path(program, job_, [&](const ToolRun& run, std::size_t number, const Stamp& stamp) {
       keep_path(run, number, stamp);
       follower.add(run, stamp);
@@ -226,7 +220,8 @@ NominalSection SectionPrograms::nominal(std::size_t section, std::size_t section
   if (thin_) return {.thin = &thin_->nominal, .place = place_in(thin_->nominal.outline, section, sections)};
   const SimulatedProgram& program = of_target();
   const auto follow = [&](const removal::TakeNominal& take) {
-    return removal::follow_nominal_path(program.moves, program.selected, program.path, program.part_path(), take);
+    return removal::follow_nominal_path(program.moves_in_part(), program.selected, program.path, program.part_path(),
+                                        take);
   };
   removal::StampPath path;
   path.runs = follow([](const ToolRun&, std::size_t, const Stamp&) {});
@@ -247,9 +242,9 @@ void SectionPrograms::add_to(TargetWork& work) const {
 }
 
 std::optional<Programs> SectionPrograms::take() {
-  const bool texts = !read_.program.text.blocks.empty();
+  const bool texts = !read_.program.text().blocks.empty();
   if (thin_ || !texts) return std::nullopt;
   return std::move(read_);
 }
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

@@ -1,16 +1,13 @@
 #pragma once
-// How a path is divided for several processes, and where the pieces cut.
-//
-// Pieces lie at places that depend on the path alone; a section is a number of consecutive pieces.
+// A stretch of a path, and the pieces in which a path is computed.
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "base/sparse_list.h"
-#include "machine/job.h"
-#include "removal/stock_part.h"
 #include "removal/tool_path.h"
+#include "simulate/path_outline.h"
 
 namespace camber::simulate {
 
@@ -48,31 +45,12 @@ inline constexpr std::size_t kPieceStamps = 1000;  ///< at most, in milling; run
 /// From the runs alone.
 std::vector<PathPiece> path_pieces(const PathStretch& path);
 
-/// Half open.
-struct PieceRange {
-  std::size_t begin = 0, end = 0;
-  bool empty() const { return begin == end; }
+/// A path that was gone through, and of which some stamps were kept.
+struct ThinPath {
+  PathOutline outline;
+  SparseList<removal::Stamp> stamps;
+
+  PathStretch stretch() const { return {outline.runs, stamps.all(), stamps.kept()}; }
 };
-/// The pieces of a section, 0 ... sections - 1: about as many stamps each. May be empty.
-PieceRange section_pieces(const std::vector<PathPiece>& pieces, std::size_t section, std::size_t sections);
-
-/// Consecutive pieces of one run.
-struct RunPieces {
-  std::size_t run = 0;
-  PieceRange pieces;
-};
-std::vector<RunPieces> runs_of(const std::vector<PathPiece>& pieces, const PieceRange& range);
-
-/// Where a cutter of an upright run cuts, reads and marks whose tips lie in a box.
-removal::Region reach_of_tips(const machine::Job& job, const removal::ToolRun& run, const removal::Region& tips);
-/// Where a piece cuts, reads and marks: a cutter about each tip, and all above it. Everywhere where an axis is tilted.
-removal::Region reach_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece);
-/// Of all pieces in a range. Empty where there is none.
-removal::Region reach_of(const machine::Job& job, const PathStretch& path, const std::vector<PathPiece>& pieces,
-                         const PieceRange& range);
-
-/// What a section does not cut is joined this far around it, so that no reading of a neighbour misses it. Empty where
-/// `reach` is.
-removal::Region joined_region(const machine::Job& job, const removal::Region& reach);
 
 }  // namespace camber::simulate

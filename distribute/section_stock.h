@@ -5,21 +5,21 @@
 #include <optional>
 #include <vector>
 
-#include "simulate/section_parts.h"
-#include "simulate/section_pieces.h"
+#include "distribute/section_parts.h"
+#include "distribute/section_pieces.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
 
 /// How a path is divided, and which part is a section's own.
 struct SectionPlace {
-  std::vector<PathPiece> pieces;
+  std::vector<simulate::PathPiece> pieces;
   std::vector<PieceRange> ranges;  ///< of all sections
   std::size_t section = 0;
   PieceRange own{};
 
-  SectionPlace(const PathStretch& path, std::size_t section, std::size_t sections);
+  SectionPlace(const simulate::PathStretch& path, std::size_t section, std::size_t sections);
   /// Divided as another path of as many pieces.
-  SectionPlace(const PathStretch& path, std::size_t section, std::vector<PieceRange> ranges);
+  SectionPlace(const simulate::PathStretch& path, std::size_t section, std::vector<PieceRange> ranges);
   std::vector<RunPieces> runs(std::size_t of_section) const { return runs_of(pieces, ranges[of_section]); }
 };
 
@@ -57,9 +57,9 @@ class StockBefore {
 
 /// How the tool was bent before each piece of a section, as a round has found. Without rows where a piece begins a run,
 /// or where there was no round.
-std::vector<BendBefore> bends_before(const SectionPlace& place, const std::vector<SolvedSection>& round,
-                                     const OwnSolution& own);
+std::vector<simulate::BendBefore> bends_before(const SectionPlace& place, const std::vector<SolvedSection>& round,
+                                               const OwnSolution& own);
 
-double largest_difference_mm(const BendBefore& a, const BendBefore& b);
+double largest_difference_mm(const simulate::BendBefore& a, const simulate::BendBefore& b);
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

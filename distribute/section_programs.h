@@ -8,82 +8,75 @@
 #include <vector>
 
 #include "base/sparse_list.h"
+#include "distribute/section_pieces.h"
+#include "distribute/section_stock.h"
 #include "simulate/path_outline.h"
 #include "simulate/pieces.h"
-#include "simulate/section_pieces.h"
-#include "simulate/section_stock.h"
 
-namespace camber::simulate {
-
-/// A path that was gone through, and of which some stamps were kept.
-struct ThinPath {
-  PathOutline outline;
-  SparseList<removal::Stamp> stamps;
-
-  PathStretch stretch() const { return {outline.runs, stamps.all(), stamps.kept()}; }
-};
+namespace camber::distribute {
 
 struct SectionProgramsOptions {
   /// A path of more stamps is not kept as a whole, if it is upright: it is timed again for the section that is asked
   /// for.
   std::size_t longest_path = 2'000'000;
   /// Whether the machine can run the program; may throw InputError.
-  std::function<void(const SimulatedProgram&)> check{};
+  std::function<void(const simulate::SimulatedProgram&)> check{};
 };
 
 /// The stamps of a section's pieces on the programmed path.
 struct NominalSection {
   removal::StampPath path{};  ///< all runs; stamps from `first` on; empty where `thin` has them
   std::size_t first = 0;
-  const ThinPath* thin = nullptr;
+  const simulate::ThinPath* thin = nullptr;
   SectionPlace place;
 
-  PathStretch stretch() const { return thin ? thin->stretch() : PathStretch(path, first); }
+  simulate::PathStretch stretch() const { return thin ? thin->stretch() : simulate::PathStretch(path, first); }
 };
 
 class SectionPrograms {
  public:
   /// Reads and times the programs. Throws InputError.
-  SectionPrograms(const machine::Job& job, const SectionProgramsOptions& options, const SetupFindings& findings);
+  SectionPrograms(const machine::Job& job, const SectionProgramsOptions& options,
+                  const simulate::SetupFindings& findings);
 
   /// False: paths and texts are as a whole in memory, as `program` has them.
   bool thin() const { return thin_.has_value(); }
-  const SimulatedProgram& program() const { return read_.program; }
+  const simulate::SimulatedProgram& program() const { return read_.program; }
   /// Its path is that of `program`, or of another one.
-  const SimulatedProgram& of_target() const { return read_.of_target(); }
+  const simulate::SimulatedProgram& of_target() const { return read_.of_target(); }
   /// All that is read from here on is of this section, or lies near it. Where paths are thin, the programs are timed
   /// once more, unless it was the last one.
   void go_to(std::size_t section, std::size_t sections);
 
   /// As the machine runs them.
-  PathStretch path() const;
-  PathStretch target_path() const;
+  simulate::PathStretch path() const;
+  simulate::PathStretch target_path() const;
   /// Of path(), where it is thin; else null.
-  const PathOutline* outline() const { return thin_ ? &thin_->path.outline : nullptr; }
+  const simulate::PathOutline* outline() const { return thin_ ? &thin_->path.outline : nullptr; }
   /// Where the pieces of any section lie on these two, or a little more.
   removal::Region reach(std::size_t section, std::size_t sections) const;
   NominalSection nominal(std::size_t section, std::size_t sections) const;
   /// Names what make_target() cannot take from of_target().
-  void add_to(TargetWork& work) const;
+  void add_to(simulate::TargetWork& work) const;
 
   /// For the merge by the same process; nothing where texts were given up. Ends the object.
-  std::optional<Programs> take();
+  std::optional<simulate::Programs> take();
 
  private:
   /// Of thin programs.
   struct Thin {
-    ThinPath path;
-    std::optional<ThinPath> original;  ///< of a target that is another program
-    ThinPath nominal;                  ///< of the target
+    simulate::ThinPath path;
+    std::optional<simulate::ThinPath> original;  ///< of a target that is another program
+    simulate::ThinPath nominal;                  ///< of the target
     std::optional<std::size_t> section{};
     std::size_t sections = 0;
-    const ThinPath& target() const { return original ? *original : path; }
+    const simulate::ThinPath& target() const { return original ? *original : path; }
   };
   void time_all(std::size_t longest_path);
 
   const machine::Job& job_;
-  Programs read_;
+  simulate::Programs read_;
   std::optional<Thin> thin_;
 };
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

@@ -1,4 +1,5 @@
-// Parts of a prediction in sections, as files.
+#include "distribute/part_files.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -7,13 +8,12 @@
 
 #include <fmt/format.h>
 
-#include "api/section_run.h"
 #include "base/bytes.h"
 #include "base/confined_files.h"
 #include "base/output_file.h"
 #include "compensate/header.h"
 
-namespace camber::api {
+namespace camber::distribute {
 namespace {
 
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ int last_round(const std::string& folder, const PartKey& key) {
   return out;
 }
 
-}  // namespace camber::api
+}  // namespace camber::distribute

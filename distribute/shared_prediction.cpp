@@ -1,12 +1,13 @@
-#include "simulate/shared_prediction.h"
+#include "distribute/shared_prediction.h"
 
-#include <cassert>
 #include <cstdint>
 #include <utility>
 
-#include "simulate/sections.h"
+#include "distribute/sections.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
+
+using namespace simulate;
 namespace {
 
 /// The parts of all processes; `bytes`: of `own` for another one.
@@ -29,8 +30,6 @@ std::uint64_t solved_again(const std::vector<SolvedSection>& sections) {
     if (!s.history.empty()) out += s.history.back().solved_again;
   return out;
 }
-
-const CrewScope::Current* the_crew = nullptr;
 
 /// What two predictions must share so that one begins where the other ended: the voxels, and how the path is divided.
 struct Division {
@@ -56,7 +55,7 @@ Division division_of(const removal::Stock& blank, const removal::StampPath& path
 
 }  // namespace
 
-struct CrewMemory {
+struct CrewPredictions::Memory {
   CrewFigures figures;
   // Of the prediction before; empty: none, or nothing that its rounds have left.
   Division division;
@@ -65,19 +64,28 @@ struct CrewMemory {
   OwnSolution own;
 };
 
-CrewScope::CrewScope(const Crew& crew)
-    : memory_(std::make_unique<CrewMemory>()), current_(new Current{crew, *memory_}) {
-  assert(!the_crew);
-  the_crew = current_.get();
+CrewPredictions::CrewPredictions(const Crew& crew) : crew_(crew), memory_(std::make_unique<Memory>()) {}
+CrewPredictions::~CrewPredictions() = default;
+
+const CrewFigures& CrewPredictions::figures() const { return memory_->figures; }
+
+simulate::Predictor CrewPredictions::predictor() {
+  return [this](const machine::Job& job, const Target& target, const SimulatedProgram& program,
+                const PredictOptions& options) { return predict(job, target, program, options); };
 }
-CrewScope::~CrewScope() { the_crew = nullptr; }
 
-const CrewFigures& CrewScope::figures() const { return memory_->figures; }
+Prediction CrewPredictions::predict(const machine::Job& job, const Target& target, const SimulatedProgram& program,
+                                    const PredictOptions& options) {
+  if (options.turn_from || options.chip_ratio != 0 || target.part_yields)
+    return simulate::predict(job, target, program, options);
+  return predict_together(job, target, program, options.progress);
+}
 
-const CrewScope::Current* current_crew() { return the_crew; }
-
-Prediction predict_together(const machine::Job& job, const Target& target, const SimulatedProgram& program,
-                            const Crew& crew, CrewMemory& memory, const std::function<void(double)>& progress) {
+Prediction CrewPredictions::predict_together(const machine::Job& job, const Target& target,
+                                             const SimulatedProgram& program,
+                                             const std::function<void(double)>& progress) {
+  const Crew& crew = crew_;
+  Memory& memory = *memory_;
   const removal::StampPath& path = program.path;
   const bool in_rounds = job.simulation.coupling == machine::Coupling::static_ && path_pieces(path).size() > 1;
   const Division division = division_of(target.blank, path);
@@ -130,4 +138,4 @@ Prediction predict_together(const machine::Job& job, const Target& target, const
   return out;
 }
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

@@ -17,13 +17,13 @@
 #include <optional>
 #include <vector>
 
+#include "distribute/section_parts.h"
+#include "distribute/section_pieces.h"
+#include "distribute/section_programs.h"
+#include "distribute/section_stock.h"
 #include "simulate/pieces.h"
-#include "simulate/section_parts.h"
-#include "simulate/section_pieces.h"
-#include "simulate/section_programs.h"
-#include "simulate/section_stock.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
 
 struct Swept {
   SweptSection section;
@@ -35,7 +35,7 @@ SweptSection sweep_section(const machine::Job& job, const SectionPrograms& progr
                            std::size_t sections, const std::function<void(const removal::StockPart&)>& own,
                            Diagnostics& diagnostics);
 /// The program's path alone, out of a stock.
-Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const PathStretch& path,
+Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const simulate::PathStretch& path,
                          const SectionPlace& place);
 
 /// Change of the stock that a piece must feel, or of the deflection with which the tool enters it, before it is solved
@@ -60,7 +60,7 @@ struct SolveOptions {
   std::size_t section = 0, sections = 1;
   std::optional<std::size_t> turn_from{};  ///< see PredictOptions
   std::function<void(double)> progress{};
-  const PathOutline* outline = nullptr;  ///< of a path that is not in memory as a whole
+  const simulate::PathOutline* outline = nullptr;  ///< of a path that is not in memory as a whole
 };
 struct Solved {
   SolvedSection section;
@@ -69,9 +69,10 @@ struct Solved {
 /// Solves a section; in a later round only the pieces whose stock has changed. `kept` (null: nothing is kept): the
 /// section's target, made where it is empty, for the next round of the same section.
 Solved solve_section(const machine::Job& job, const SectionPrograms& programs, const SectionParts& parts,
-                     const SolveOptions& options, Diagnostics& diagnostics, std::optional<Target>* kept = nullptr);
+                     const SolveOptions& options, Diagnostics& diagnostics,
+                     std::optional<simulate::Target>* kept = nullptr);
 /// The same against a whole target; no contour.
-Solved solve_path_section(const machine::Job& job, const Target& target, const PathStretch& path,
+Solved solve_path_section(const machine::Job& job, const simulate::Target& target, const simulate::PathStretch& path,
                           const SectionPlace& place, const SectionParts& parts,
                           const std::function<void(double)>& progress);
 
@@ -79,7 +80,7 @@ Solved solve_path_section(const machine::Job& job, const Target& target, const P
 /// `programs` may be at another section.
 removal::Region section_region(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
                                std::size_t sections);
-removal::Region section_region(const machine::Job& job, const PathStretch& path, const SectionPlace& place,
+removal::Region section_region(const machine::Job& job, const simulate::PathStretch& path, const SectionPlace& place,
                                std::size_t section);
 
 /// Gives the parts of all sections one after the other, in order; each may be used up. Several times the same.
@@ -90,13 +91,15 @@ EachSolved each_of(std::vector<SolvedSection>& solved);
 
 /// Joins the target's parts instead of sweeping it. `within` (null: everywhere) bounds what is joined and must outlive
 /// the result, as what the parts come from must.
-TargetWork joined_target(EachSwept swept, EachSolved solved, const removal::Region* within = nullptr);
+simulate::TargetWork joined_target(EachSwept swept, EachSolved solved, const removal::Region* within = nullptr);
 
 /// The prediction of all parts. `solved`: of the last round. One part is looked at at a time. Target: made by
 /// joined_target(), or whole; its map is used up.
-Prediction merge_sections(const machine::Job& job, Target& target, const SimulatedProgram& program,
-                          const EachSwept& swept, const EachSolved& solved);
-Prediction merge_sections(const machine::Job& job, const Target& target, removal::SurfaceMap map,
-                          const SimulatedProgram& program, const EachSwept& swept, const EachSolved& solved);
+simulate::Prediction merge_sections(const machine::Job& job, simulate::Target& target,
+                                    const simulate::SimulatedProgram& program, const EachSwept& swept,
+                                    const EachSolved& solved);
+simulate::Prediction merge_sections(const machine::Job& job, const simulate::Target& target, removal::SurfaceMap map,
+                                    const simulate::SimulatedProgram& program, const EachSwept& swept,
+                                    const EachSolved& solved);
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

@@ -13,7 +13,7 @@
 #include "removal/stock_part.h"
 #include "simulate/cut.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
 
 /// What was done, for the efficiency of many.
 struct SectionWork {
@@ -66,8 +66,8 @@ struct SolvedSection {
   std::vector<Round> history;  ///< from the second round on
   SectionWork work;
   // For the merge.
-  std::vector<CutResult> cuts;  ///< one per piece, without bend
-  SurfaceMarks marks, contour;  ///< the deepest of all pieces; contour: of the target program
+  std::vector<simulate::CutResult> cuts;  ///< one per piece, without bend
+  SurfaceMarks marks, contour;            ///< the deepest of all pieces; contour: of the target program
 
   /// What a section that reads within `region` needs: nothing for the merge.
   SolvedSection within(const removal::Region& region, double voxel_mm) const;
@@ -77,7 +77,7 @@ struct SolvedSection {
 
 /// A piece that was solved.
 struct SolvedPiece {
-  CutResult cut;
+  simulate::CutResult cut;
   std::vector<removal::PointMark> marks;  ///< on the section's map
   removal::StockPart stock;               ///< static: what the deflected cutter cut
 };
@@ -102,4 +102,4 @@ Part part_from(std::string_view bytes) {
   return Part::read(in);
 }
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

@@ -1,11 +1,13 @@
-#include "simulate/section_stock.h"
+#include "distribute/section_stock.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-namespace camber::simulate {
+namespace camber::distribute {
+
+using namespace simulate;
 
 using removal::Region;
 using removal::Stock;
@@ -99,4 +101,4 @@ double largest_difference_mm(const BendBefore& a, const BendBefore& b) {
   return static_cast<double>(out);
 }
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute

@@ -1,7 +1,8 @@
-#include "feedmodel/control_options.h"
+#include "kinematics/control_options.h"
 
 #include <algorithm>
 #include <cassert>
+#include <cctype>
 #include <cmath>
 
 #include "machine/control_kinds.h"
@@ -9,7 +10,7 @@
 #include "nc/dialects.h"
 #include "nc/emit/number_style.h"
 
-namespace camber::feedmodel {
+namespace camber::kinematics {
 namespace {
 
 constexpr bool has_dialect(const machine::ControlKind& kind) {
@@ -57,6 +58,20 @@ nc::InterpreterOptions interpreter_options(const machine::Machine& machine, nc::
   return given;
 }
 
+std::vector<nc::RotaryOption> rotary_options(const machine::Machine& machine) {
+  std::vector<nc::RotaryOption> out;
+  for (const char letter : {'a', 'b', 'c'}) {
+    if (machine.kinematics.chain.find(letter) == std::string::npos) continue;
+    const machine::RotaryAxis& axis = machine.rotary[static_cast<std::size_t>(letter - 'a')];
+    out.push_back({.letter = static_cast<char>(std::toupper(letter)),
+                   .on_table = machine.kinematics.chain.find(letter) < machine.kinematics.table_axes,
+                   .shortest_way = axis.shortest_way,
+                   .clamp_m = axis.clamp_m,
+                   .unclamp_m = axis.unclamp_m});
+  }
+  return out;
+}
+
 nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program& program) {
   constexpr int kFewest = 3, kMax = 4;  // millimetres
   nc::EmitOptions out;
@@ -71,4 +86,4 @@ nc::EmitOptions decimals_for(const machine::Control& control, const nc::Program&
   return out;
 }
 
-}  // namespace camber::feedmodel
+}  // namespace camber::kinematics

@@ -1,4 +1,4 @@
-#include "simulate/sections.h"
+#include "distribute/sections.h"
 
 #include <algorithm>
 #include <array>
@@ -6,13 +6,15 @@
 
 #include "base/cancel.h"
 #include "base/stage.h"
+#include "distribute/section_stock.h"
 #include "removal/engagement.h"
 #include "removal/joined_parts.h"
 #include "removal/known_run.h"
 #include "simulate/contour.h"
-#include "simulate/section_stock.h"
 
-namespace camber::simulate {
+namespace camber::distribute {
+
+using namespace simulate;
 
 using machine::Job;
 using removal::Region;
@@ -194,8 +196,6 @@ class SectionSolver {
     const auto done = static_cast<double>(p - place_.own.begin),
                all = static_cast<double>(place_.own.end - place_.own.begin);
     SolvedPiece out;
-    std::optional<removal::KnownRunScope> known;
-    if (const removal::KnownRun* run = known_run(piece.run)) known.emplace(*run);
     out.cut = cut_piece(stock, job_, path_,
                         {.run = piece.run,
                          .from = piece.from,
@@ -206,10 +206,10 @@ class SectionSolver {
                          .target = &target_.surface,
                          .turn_from = options_.turn_from,
                          .bend = bend(p).rows.empty() ? nullptr : &bend(p),
+                         .known = known_run(piece.run),
                          .progress = [&](double share) {
                            if (options_.progress) options_.progress((done + share) / all);
                          }});
-    known.reset();
     out.marks = map_.take_marks();
     work.stamps += piece.count;
     if (coupling_ != machine::Coupling::static_) return out;
@@ -429,7 +429,7 @@ Prediction merge_sections(const Job& job, Target& target, const SimulatedProgram
 Prediction merge_sections(const Job& job, const Target& target, removal::SurfaceMap map,
                           const SimulatedProgram& program, const EachSwept& swept, const EachSolved& solved) {
   PathLoads loads;
-  loads.holes.count = removal::count_holes(program.moves, program.holes);
+  loads.holes.count = removal::count_holes(program.moves_in_part(), program.holes);
   loads.cut.loads.reserve(program.path.stamps.size());
   auto machined = std::make_unique<Stock>(target.blank);
   std::vector<removal::SurfacePoint> surface = map.take();
@@ -449,4 +449,4 @@ Prediction merge_sections(const Job& job, const Target& target, removal::Surface
   return judge(job, target, program, std::move(loads), std::move(surface), std::move(machined));
 }
 
-}  // namespace camber::simulate
+}  // namespace camber::distribute
