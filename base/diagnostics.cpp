@@ -119,12 +119,18 @@ char line_end_of(std::string_view text) {
   return alone > feeds ? '\r' : '\n';
 }
 
-/// All that is left of a stream whose length nobody knows (a pipe).
-std::string read_to_end(std::istream& in) {
+constexpr std::size_t kMaxPipeBytes = std::size_t{1} << 30;
+
+/// All that is left of a stream whose length nobody knows (a pipe). Throws InputError beyond a gigabyte: devices such
+/// as /dev/zero have no end.
+std::string read_to_end(std::istream& in, const std::string& path) {
   std::string out;
   std::array<char, 1 << 16> piece;
-  while (in.read(piece.data(), piece.size()), in.gcount() > 0)
+  while (in.read(piece.data(), piece.size()), in.gcount() > 0) {
     out.append(piece.data(), static_cast<std::size_t>(in.gcount()));
+    if (out.size() > kMaxPipeBytes)
+      fail_on_file(path, "does not end after a gigabyte; a file was expected, or a pipe that ends", "file-unreadable");
+  }
   return out;
 }
 
@@ -161,7 +167,7 @@ SourceText SourceText::read(const std::string& path) {
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   refuse_half();
-  if (in) text += read_to_end(in);  // it has grown meanwhile
+  if (in) text += read_to_end(in, path);  // it has grown meanwhile
   refuse_half();
   return SourceText(path, std::move(text));
 }

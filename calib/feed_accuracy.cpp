@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <sstream>
 
@@ -330,8 +331,14 @@ std::vector<Part> read_parts(const std::string& path) {
       if (!v) fail_on_file(path, "column " + std::string(name) + " is missing or not a number", "parts-column");
       return *v;
     };
-    parts.push_back({static_cast<std::uint32_t>(value("line_first")), static_cast<std::uint32_t>(value("line_last")),
-                     mm_per_s_from_mm_per_min(value("feed_mm_min"))});
+    const auto line_of = [&](std::string_view name) {
+      const double line_number = value(name);
+      if (!(line_number >= 0 && line_number <= std::numeric_limits<std::uint32_t>::max()))
+        fail_on_file(path, "column " + std::string(name) + " has a value that is no line of a program", "parts-column");
+      return static_cast<std::uint32_t>(line_number);
+    };
+    const std::uint32_t first = line_of("line_first"), last = line_of("line_last");
+    parts.push_back({first, last, mm_per_s_from_mm_per_min(value("feed_mm_min"))});
   }
   return parts;
 }

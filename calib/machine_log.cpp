@@ -281,7 +281,7 @@ ServoTrace position_trace(const MachineLog& log) {
   for (const auto& events : log.position_mm)
     for (const LogEvent& e : events) times.push_back(e.t_s);
   std::ranges::sort(times);
-  times.erase(std::ranges::unique(times).begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   ServoTrace trace;
   trace.path = log.path;
   trace.has_actual = {true, true, true};

@@ -80,16 +80,23 @@ class UniversalReader {
     return *value;
   }
 
+  /// A code or a count: none of them is negative or has more digits than this.
+  int whole(std::size_t line, std::size_t from, std::size_t width, std::string_view what) const {
+    const double value = number(line, from, width, what);
+    if (!(value >= 0 && value <= 1e9)) fail(line, fmt::format("{}: {} cannot be", what, value), "response-value");
+    return static_cast<int>(value);
+  }
+
   /// Numbers of the file over these are SI.
   void read_units(std::size_t line) {
     length_ = number(line + 2, 0, 25, "factor of lengths");
     force_ = number(line + 2, 25, 25, "factor of forces");
   }
 
-  int function_type(std::size_t line) const { return static_cast<int>(number(line + 6, 0, 5, "function type")); }
+  int function_type(std::size_t line) const { return whole(line + 6, 0, 5, "function type"); }
 
   ResponseKind kind(std::size_t line) const {
-    const int type = static_cast<int>(number(line + 9, 0, 10, "type of the response"));
+    const int type = whole(line + 9, 0, 10, "type of the response");
     switch (type) {
       case 8:
         return ResponseKind::receptance;
@@ -106,7 +113,7 @@ class UniversalReader {
   }
 
   void expect_force(std::size_t line) const {
-    const int type = static_cast<int>(number(line + 10, 0, 10, "type of the reference"));
+    const int type = whole(line + 10, 0, 10, "type of the reference");
     if (type != 13 && type != 9)
       fail(line + 10, fmt::format("the reference is of type {}; 13 (excitation force) was expected", type),
            "response-header");
@@ -123,8 +130,8 @@ class UniversalReader {
     u.response.path = source_.name();
     u.response.kind = kind(line);
     expect_force(line);
-    const int ordinate = static_cast<int>(number(line + 7, 0, 10, "type of the ordinates"));
-    const auto count = static_cast<std::size_t>(number(line + 7, 10, 10, "number of values"));
+    const int ordinate = whole(line + 7, 0, 10, "type of the ordinates");
+    const auto count = static_cast<std::size_t>(whole(line + 7, 10, 10, "number of values"));
     const bool even = number(line + 7, 20, 10, "spacing") == 1;
     const double first = number(line + 7, 30, 13, "lowest frequency"), step = number(line + 7, 43, 13, "step");
     if (ordinate != complex_single && ordinate != complex_double)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <ranges>
 #include <string_view>
 #include <vector>
 
@@ -21,8 +20,8 @@ bool ForceRegions::meet(const Vec3& min_mm, const Vec3& max_mm) const {
 }
 
 double ForceRegions::factor_at(const Vec3& p) const {
-  for (const ForceRegion& r : std::views::reverse(regions_))
-    if ((r.min_mm.array() <= p.array()).all() && (r.max_mm.array() >= p.array()).all()) return r.factor;
+  for (auto r = regions_.rbegin(); r != regions_.rend(); ++r)
+    if ((r->min_mm.array() <= p.array()).all() && (r->max_mm.array() >= p.array()).all()) return r->factor;
   return 1;
 }
 

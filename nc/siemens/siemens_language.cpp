@@ -34,7 +34,7 @@ bool is_own_g(std::string_view digits) {
   const auto number = parse_number(digits);
   if (!number) return false;
   constexpr int kOwn[] = {450, 451, 500, 505, 506, 507, 508, 509, 601, 602, 603, 641, 642, 643, 644, 645, 700, 710};
-  return std::ranges::find(kOwn, static_cast<int>(*number)) != std::end(kOwn);
+  return std::ranges::any_of(kOwn, [&](int own) { return own == *number; });
 }
 
 }  // namespace

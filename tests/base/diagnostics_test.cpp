@@ -32,6 +32,17 @@ TEST(Diagnostics, ControlCharactersDoNotReachTheTerminal) {
             "    \t                 ^");
 }
 
+TEST(Diagnostics, AFileWithoutAnEndIsRefused) {
+  try {
+    SourceText::read("/dev/zero");
+    FAIL() << "no error";
+  } catch (const InputError& e) {
+    EXPECT_STREQ(e.what(),
+                 "/dev/zero: error: does not end after a gigabyte; a file was expected, or a pipe that ends "
+                 "[file-unreadable]");
+  }
+}
+
 TEST(Diagnostics, StopAtTheTwentiethError) {
   Diagnostics all;
   for (int i = 0; i < 19; ++i) all.add({Severity::error, {"f", 1, 1}, "m", "c", ""});

@@ -147,6 +147,18 @@ TEST(MachineReader, ShowsSyntaxErrorsLikeOthers) {
             "                ^");
 }
 
+TEST(MachineReader, NamesTheLineOfATextThatTheParserRefusesToRead) {
+  for (const std::string header : {"[ =axis.x]", "[[ =axis.x]]", "[ #]"}) {
+    SCOPED_TRACE(header);
+    EXPECT_EQ(messages("[control]\nperiod_ms = 1\n" + header + "\nfilter_ms = 1\n"),
+              "m.toml:3:1: error: not valid TOML: a key, a table or a value was expected [toml-syntax]\n"
+              "    " +
+                  header +
+                  "\n"
+                  "    ^");
+  }
+}
+
 TEST(MachineReader, SuggestsTheKeyThatWasMeant) {
   EXPECT_EQ(messages("[axis.x]\nmax_velocity = 9000\n"),
             "m.toml:2:1: error: unknown key max_velocity in [axis.x]; did you mean max_velocity_mm_per_min? "
