@@ -22,10 +22,10 @@ using compensate::CompensationResult;
 
 std::vector<CompensatedPoint> points_of(const CompensationResult& c) {
   std::vector<CompensatedPoint> out;
-  out.reserve(c.surface_before.size());
-  for (std::size_t i = 0; i < c.surface_before.size(); ++i) {
-    const removal::SurfacePoint& p = c.surface_before[i];
-    const double after_mm = i < c.surface_after.size() ? c.surface_after[i].error_mm : p.error_mm;
+  out.reserve(c.surfaces.before.size());
+  for (std::size_t i = 0; i < c.surfaces.before.size(); ++i) {
+    const removal::SurfacePoint& p = c.surfaces.before[i];
+    const double after_mm = i < c.surfaces.after.size() ? c.surfaces.after[i].error_mm : p.error_mm;
     out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(),
                    1000 * p.error_mm, 1000 * after_mm, p.area_mm2});
   }
@@ -35,26 +35,26 @@ std::vector<CompensatedPoint> points_of(const CompensationResult& c) {
 /// All but diagnostics and json.
 CompensateResult result_of(const CompensationResult& c, const machine::CompensationSettings& asked) {
   const report::VerdictText verdict = report::verdict_text(c, asked);
-  CompensateResult out{.program = c.text,
-                       .better = c.better,
+  CompensateResult out{.program = c.emitted.text,
+                       .better = c.verdict.better,
                        .success = verdict.success,
                        .headline = verdict.headline,
                        .reasons = verdict.reasons,
-                       .before_um = api::figures_of(c.before_um),
-                       .after_um = api::figures_of(c.after_um),
+                       .before_um = api::figures_of(c.figures.before_um),
+                       .after_um = api::figures_of(c.figures.after_um),
                        .best_round = c.best,
-                       .stop = compensate::to_string(c.stop),
-                       .blocks_before = c.blocks_before,
-                       .blocks_after = c.blocks_after,
-                       .blocks_changed = c.blocks_changed,
-                       .max_shift_mm = c.max_shift_mm,
+                       .stop = compensate::to_string(c.verdict.stop),
+                       .blocks_before = c.emitted.blocks_before,
+                       .blocks_after = c.emitted.blocks_after,
+                       .blocks_changed = c.emitted.blocks_changed,
+                       .max_shift_mm = c.path.max_shift_mm,
                        .surface = points_of(c)};
   for (const auto& round : c.rounds)
     out.rounds.push_back(
         {api::figures_of(round.error_um), round.largest_shift_mm, round.machine_time_s, round.repeated});
   for (const auto& point : c.time_points) out.time_points.push_back({point.allowed_percent, point.round});
-  for (const auto& run : c.repeated) out.repeated.push_back({run.first_line, run.last_line});
-  out.pass_allowance_mm = c.pass_allowance_mm;
+  for (const auto& run : c.passes.runs) out.repeated.push_back({run.first_line, run.last_line});
+  out.pass_allowance_mm = c.passes.allowance_mm;
   return out;
 }
 
@@ -95,22 +95,22 @@ CompensateResult v0::compensate(const Job& job, const CompensateOptions& options
                                          .levers = options.levers,
                                          .progress = run.progress()};
     const api::CompensatedJob done = api::compensate_job(job.impl().job, request, found);
-    for (const std::string& name : done.result.unknown_parameters)
+    for (const std::string& name : done.result.uncertainty.unknown_parameters)
       found.add({Severity::warning,
                  {job.path(), 0, 0},
                  "uncertainty: " + name + " is not a parameter of the job; ignored",
                  "uncertainty",
                  {}});
     run.settle(found);
-    if (!options.output.empty() && (done.result.better || options.keep_anyway))
+    if (!options.output.empty() && (done.result.verdict.better || options.keep_anyway))
       api::write_compensated(options.output, done.job, done.result);
     const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result = result_of(done.result, done.job.compensation);
     result.diagnostics = found.all();
     result.json = machine::with_assumptions(
         report::with_features(report::compensate_json(done.result, done.job.compensation, compute_s),
-                              {{"features_before", report::features_of(done.job, done.result.surface_before)},
-                               {"features_after", report::features_of(done.job, done.result.surface_after)}}),
+                              {{"features_before", report::features_of(done.job, done.result.surfaces.before)},
+                               {"features_after", report::features_of(done.job, done.result.surfaces.after)}}),
         machine::assumptions(done.job));
   });
   return result;

@@ -40,15 +40,15 @@ void write_report(const CompensateArguments& arguments, const machine::Job& job,
   };
   const auto before = machined(SourceText::read(job.program));
   machine::Job emitted_job = job;
-  if (job.operations.given() && !result.block_of_line.empty())
-    emitted_job.operations = compensate::moved_ranges(result.operations, result.block_of_line);
-  const auto after = simulate::simulate_motion(SourceText(job.program, result.text), emitted_job, {}, ignored);
+  if (job.operations.given() && !result.emitted.block_of_line.empty())
+    emitted_job.operations = compensate::moved_ranges(result.scope.operations, result.emitted.block_of_line);
+  const auto after = simulate::simulate_motion(SourceText(job.program, result.emitted.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
-  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves;
-  report::write_html_report(arguments.report,
-                            report::compensate_report(job, result, {before, rows(before), result.loads_before},
-                                                      {after, rows(after), result.loads_after}, arguments.output,
-                                                      diagnostics, from ? &*from : nullptr));
+  if (!result.passes.text.empty()) from = machined(SourceText(job.program, result.passes.text)).moves;
+  report::write_html_report(
+      arguments.report, report::compensate_report(job, result, {before, rows(before), result.surfaces.loads_before},
+                                                  {after, rows(after), result.surfaces.loads_after}, arguments.output,
+                                                  diagnostics, from ? &*from : nullptr));
 }
 
 }  // namespace
@@ -114,16 +114,16 @@ int compensate_program(const machine::Job& given, Diagnostics diagnostics, const
   const double compute_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   const std::vector<std::string> assumed = machine::assumptions(given);
-  for (const auto& name : result.unknown_parameters)
+  for (const auto& name : result.uncertainty.unknown_parameters)
     if (!options.quiet)
       fmt::print(stderr, "camber: warning: --uncertainty: {} is not a parameter of the job; ignored [uncertainty]\n",
                  name);
   Diagnostics failed;
-  const bool written = !arguments.dry_run && (result.better || arguments.keep_anyway);
+  const bool written = !arguments.dry_run && (result.verdict.better || arguments.keep_anyway);
   if (written) try_to_write([&] { api::write_compensated(arguments.output, job, result); }, failed);
   emitted = written;
-  const auto features_before = report::features_of(job, result.surface_before);
-  const auto features_after = report::features_of(job, result.surface_after);
+  const auto features_before = report::features_of(job, result.surfaces.before);
+  const auto features_after = report::features_of(job, result.surfaces.after);
   std::error_code ec;
   if (written && !features_after.empty() && std::filesystem::is_regular_file(arguments.output, ec))  // not a pipe
     try_to_write([&] { report::write_features_csv(features_path(arguments.output), features_after); }, failed);

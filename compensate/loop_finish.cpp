@@ -48,9 +48,9 @@ std::vector<nc::EditNotMade> Loop::in_given(std::vector<nc::EditNotMade> not_mad
 }
 
 Stop Loop::verdict(const CompensationResult& out) const {
-  if (out.within_tolerance && out.within_part) return Stop::tolerance;
+  if (out.verdict.within_tolerance && out.safety.within_part) return Stop::tolerance;
   // The guard is the reason only where it made the error larger.
-  const bool guarded = out.rounds[out.best].guard && out.rounds[free_round_].error_um.rms < out.after_um.rms;
+  const bool guarded = out.rounds[out.best].guard && out.rounds[free_round_].error_um.rms < out.figures.after_um.rms;
   return guarded ? Stop::depth_limit : ended_;
 }
 
@@ -94,7 +94,7 @@ std::vector<BindingLimit> Loop::binding_limits(const CompensationResult& out) {
                       std::ceil(10 * deg_from_rad(best.free_angle_growth_rad)) / 10});
   if (const Round& unguarded = out.rounds[free_round_]; best.guard && unguarded.deepest_um > depth_limit_um_)
     limits.push_back({asked.profile_um ? kProfileKey : kOvercutKey, depth_limit_um_,
-                      std::ceil(10 * unguarded.deepest_um) / 10, out.own_depth_limit});
+                      std::ceil(10 * unguarded.deepest_um) / 10, out.safety.own_depth_limit});
   return limits;
 }
 
@@ -105,7 +105,7 @@ Tried Loop::tried(const CompensationResult& out) const {
     found.feeds = found.feeds || round.slowed > 0;
     found.second_cuts = found.second_cuts || round.repeated > 0;
   }
-  found.limits = out.limits;
+  found.limits = out.verdict.limits;
   return found;
 }
 
@@ -116,9 +116,9 @@ void Loop::say_passes(CompensationResult& out) const {
   for (const nc::CutRun& run : runs)
     if (run.why_not == nc::RunGap::none) able.push_back(run);
   for (const std::size_t r : now_->passes)
-    out.repeated.push_back({std::size_t{able[r].first_block} + 1, std::size_t{able[r].last_block} + 1});
-  out.pass_allowance_mm = allowance_mm_;
-  out.repeated_text = now_->repeated->text;
+    out.passes.runs.push_back({std::size_t{able[r].first_block} + 1, std::size_t{able[r].last_block} + 1});
+  out.passes.allowance_mm = allowance_mm_;
+  out.passes.text = now_->repeated->text;
 }
 
 void Loop::finish(CompensationResult& out) {
@@ -127,62 +127,63 @@ void Loop::finish(CompensationResult& out) {
   FeedLever::set_fractions(path, best_->fractions);
   const Round &first = out.rounds[0], &best = out.rounds[out.best];
   const SimulatedProgram& program = best_->emitted ? best_->emitted->program : setup_.program;
-  out.before_um = first.error_um;
-  out.after_um = best.error_um;
-  out.split_before = first.split;
-  out.split_after = best.split;
-  out.surface_after = best_->surface;
-  out.loads_after = best_->loads;
-  out.feed_after = program.feed;
-  out.max_shift_mm = best.largest_shift_mm;
+  out.figures.before_um = first.error_um;
+  out.figures.after_um = best.error_um;
+  out.figures.split_before = first.split;
+  out.figures.split_after = best.split;
+  out.surfaces.after = best_->surface;
+  out.surfaces.loads_after = best_->loads;
+  out.figures.feed_after = program.feed;
+  out.path.max_shift_mm = best.largest_shift_mm;
   say_passes(out);
   if (best_->emitted) {
     warn_of_not_emitted(given().text, given().moves, in_given(best_->emitted->emission.not_made), diagnostics_);
-    out.quality = best_->emitted->quality;
+    out.path.quality = best_->emitted->quality;
   }
-  out.surface_steps =
+  out.path.surface_steps =
       surface_steps(path, row_links(path, kRowReach_mm, RowSense::any), first_observed_, best_->observed);
-  out.row_steps = row_steps(path, kRowReach_mm);
+  out.path.row_steps = row_steps(path, kRowReach_mm);
   const ThinPath thin(path, now_->splits->kept());
-  out.row_turn_rad =
+  out.path.row_turn_rad =
       row_turn(thin.path(), row_links(thin.path(), kRowReach_mm), job_.compensation.max_angle_growth_rad).max_rad;
   const double max_um = depth_limit_um_;
-  out.depth_after = depth_of(out.surface_after, best_->observed, max_um, true);
-  out.depth_after.line = lines_of(*best_, {&out.depth_after.stamp, 1}).front();
-  out.depth_others = depth_of(out.surface_after, best_->observed, max_um, false);
-  out.depth_without_bending = depth_without_bending(job_, setup_.target, program, max_um);
-  out.within_part = out.depth_after.gouge_depth_p999_um <= max_um;
-  out.plain_after = figures_of(*best_);
-  out.within_tolerance = within_tolerance(out.plain_after, job_.compensation);
-  out.worse = worse_of(*best_);
-  out.stop = verdict(out);
-  out.limits = binding_limits(out);
-  if (!out.within_tolerance) {
+  out.safety.after = depth_of(out.surfaces.after, best_->observed, max_um, true);
+  out.safety.after.line = lines_of(*best_, {&out.safety.after.stamp, 1}).front();
+  out.safety.others = depth_of(out.surfaces.after, best_->observed, max_um, false);
+  out.safety.without_bending = depth_without_bending(job_, setup_.target, program, max_um);
+  out.safety.within_part = out.safety.after.gouge_depth_p999_um <= max_um;
+  out.figures.plain_after = figures_of(*best_);
+  out.verdict.within_tolerance = within_tolerance(out.figures.plain_after, job_.compensation);
+  out.figures.worse = worse_of(*best_);
+  out.verdict.stop = verdict(out);
+  out.verdict.limits = binding_limits(out);
+  if (!out.verdict.within_tolerance) {
     std::vector<PointCause> points;
     split_error(path, best_->observed, fit_options(), &points);
     std::vector<std::int32_t> stamps;
     for (const removal::SurfacePoint& p : best_->surface) stamps.push_back(p.machined_stamp);
-    out.causes = causes_of(best.split, points, best_->observed, lines_of(*best_, stamps));
-    for (CauseFigure& cause : out.causes) {
+    out.verdict.causes = causes_of(best.split, points, best_->observed, lines_of(*best_, stamps));
+    for (CauseFigure& cause : out.verdict.causes) {
       if (setup_.target.contour_parts && cause.cause == Cause::short_range)
         cause.contour = contour_cause_of(cause.cause, points, best_->surface);
       cause.remedies = remedies_of(cause, tried(out));
     }
   }
   if (options_.max_stock_crossings > 0)
-    out.stock = removal::stock_shape(setup_.target.surface, options_.max_stock_crossings);
+    out.surfaces.stock = removal::stock_shape(setup_.target.surface, options_.max_stock_crossings);
   Diagnostics travel;  // the given program's warnings are said
   simulate::check_travel(job_, program, travel);
   for (const Diagnostic& d : travel.all())
     if (d.severity == Severity::error) diagnostics_.add(d);
   diagnostics_.throw_if_errors();
-  out.blocks_before = given().text.source.line_count();
-  out.blocks_after = program.text.source.line_count();
-  out.blocks_changed = best_->emitted ? count_changed(*best_->emitted) : 0;
-  out.settled = first.unsettled == 0 && best.unsettled == 0;
+  out.emitted.blocks_before = given().text.source.line_count();
+  out.emitted.blocks_after = program.text.source.line_count();
+  out.emitted.blocks_changed = best_->emitted ? count_changed(*best_->emitted) : 0;
+  out.verdict.settled = first.unsettled == 0 && best.unsettled == 0;
   const double imbalance = simulate::imbalance(best_->chip_mm3, best_->stock_mm3, job_.simulation.voxel_mm);
-  if (out.doubts.empty() && best_->all_valid && std::abs(imbalance) > simulate::kMaxImbalance)
-    out.doubts.push_back("in the emitted program " + simulate::imbalance_sentence(best_->chip_mm3, best_->stock_mm3));
+  if (out.verdict.doubts.empty() && best_->all_valid && std::abs(imbalance) > simulate::kMaxImbalance)
+    out.verdict.doubts.push_back("in the emitted program " +
+                                 simulate::imbalance_sentence(best_->chip_mm3, best_->stock_mm3));
 }
 
 /// Both programs on another grid, each with its own version; the given one first.
@@ -200,11 +201,11 @@ void Loop::recheck_on(double voxel_mm, CompensationResult& out) {
   }
   const SimulatedProgram& target = setup_.own_target() ? given() : *setup_.original;
   const std::vector<std::uint32_t> moves = setup_.own_target() ? now_->moves : std::vector<std::uint32_t>();
-  out.rechecks.push_back(recheck(job_, voxel_mm, setup_, pair, *now_->path, fit_options(),
-                                 {target, moves, now_->first_cuts}, options_.progress));
+  out.uncertainty.rechecks.push_back(recheck(job_, voxel_mm, setup_, pair, *now_->path, fit_options(),
+                                             {target, moves, now_->first_cuts}, options_.progress));
   if (!of_given) return;
-  out.rechecks.back().before_um = of_given->before_um;
-  out.rechecks.back().split_before = of_given->split_before;
+  out.uncertainty.rechecks.back().before_um = of_given->before_um;
+  out.uncertainty.rechecks.back().split_before = of_given->split_before;
 }
 
 void Loop::check(CompensationResult& out) {
@@ -214,24 +215,25 @@ void Loop::check(CompensationResult& out) {
   std::vector<std::vector<double>> changes;
   for (const ParameterGroup& group : options_.uncertainty) {
     names.push_back(group.name);
-    changes.push_back(
-        changes_mm(job_, group, setup_, emitted, out.surface_after, out.unknown_parameters, options_.progress));
+    changes.push_back(changes_mm(job_, group, setup_, emitted, out.surfaces.after, out.uncertainty.unknown_parameters,
+                                 options_.progress));
   }
-  if (!names.empty()) out.band = band_of(out.surface_before, out.surface_after, names, changes, depth_limit_um_ / 1000);
-  out.text = emitted ? emitted->emission.text : setup_.program.text.source.text();
+  if (!names.empty())
+    out.uncertainty.band = band_of(out.surfaces.before, out.surfaces.after, names, changes, depth_limit_um_ / 1000);
+  out.emitted.text = emitted ? emitted->emission.text : setup_.program.text.source.text();
   if (emitted)
-    out.block_of_line = given_blocks(emitted->emission.block_of_line);
+    out.emitted.block_of_line = given_blocks(emitted->emission.block_of_line);
   else if (now_->repeated)
-    out.block_of_line = now_->repeated->block_of_line;
+    out.emitted.block_of_line = now_->repeated->block_of_line;
   if (!options_.header || !emitted) return;
   trials_.header = options_.header(out);
   nc::Emission with_header = trials_.text_of(*now_->path, emitted->splits);
-  out.text = std::move(with_header.text);
-  out.block_of_line = given_blocks(std::move(with_header.block_of_line));
-  const std::size_t more = SourceText("", out.text).line_count() - out.blocks_after;
-  for (CauseFigure& cause : out.causes)
+  out.emitted.text = std::move(with_header.text);
+  out.emitted.block_of_line = given_blocks(std::move(with_header.block_of_line));
+  const std::size_t more = SourceText("", out.emitted.text).line_count() - out.emitted.blocks_after;
+  for (CauseFigure& cause : out.verdict.causes)
     for (ProgramLine& line : cause.lines) line.emitted += more;
-  if (out.depth_after.line.emitted > 0) out.depth_after.line.emitted += more;
+  if (out.safety.after.line.emitted > 0) out.safety.after.line.emitted += more;
 }
 
 }  // namespace camber::compensate

@@ -142,9 +142,9 @@ bool Loop::ask_for_lifts(Guard& guard, double deepest_um) {
 
 void Loop::choose(CompensationResult& out) {
   const bool given_is_good =
-      within_tolerance(out.plain_before, job_.compensation) && out.rounds[0].deepest_um <= depth_limit_um_;
-  out.better = allowed_index_ > 0 || out.rounds.size() == 1 || given_is_good;
-  if (!out.better && options_.keep_anyway) return;
+      within_tolerance(out.figures.plain_before, job_.compensation) && out.rounds[0].deepest_um <= depth_limit_um_;
+  out.verdict.better = allowed_index_ > 0 || out.rounds.size() == 1 || given_is_good;
+  if (!out.verdict.better && options_.keep_anyway) return;
   out.best = allowed_index_;
   best_ = allowed_;
   activate(best_->version);
@@ -292,7 +292,7 @@ bool Loop::done(const CompensationResult& out, const StepModel& model) {
   const auto& c = job_.compensation;
   const Round& best = out.rounds[out.best];
   const std::size_t made = out.rounds.size() - first_round_;  // the first one is that of the version as given
-  const bool ready = out.best > 0 || within_tolerance(out.plain_before, c);
+  const bool ready = out.best > 0 || within_tolerance(out.figures.plain_before, c);
   const double left_um = c.goal == machine::Goal::best ? std::max(kMinFall * best.error_um.p95, kFinest_um)
                                                        : kLeftOver * c.half_width_um();
   const bool nothing_left = best.split.correctable_p95_um <= left_um;

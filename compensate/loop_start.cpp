@@ -82,12 +82,12 @@ void Loop::start(CompensationResult& out) {
   simulate::Prediction prediction = trials_.predict(setup_.program, progress("as given"));
   read_given(prediction, out);
   given->keep(std::move(prediction));
-  out.finishing = find_finishing(job_, setup_.program, given->surface);
-  out.lines = line_roles(setup_.program, out.finishing.moves);
-  out.operations = simulate::as_lines(job_.operations, setup_.program.text, setup_.program.moves);
-  check_levers(out.finishing.moves);
-  nc::warn_of_uneditable(setup_.program.text, setup_.program.moves, out.finishing.moves, diagnostics_);
-  now_->compensated = out.finishing.moves;
+  out.scope.finishing = find_finishing(job_, setup_.program, given->surface);
+  out.scope.lines = line_roles(setup_.program, out.scope.finishing.moves);
+  out.scope.operations = simulate::as_lines(job_.operations, setup_.program.text, setup_.program.moves);
+  check_levers(out.scope.finishing.moves);
+  nc::warn_of_uneditable(setup_.program.text, setup_.program.moves, out.scope.finishing.moves, diagnostics_);
+  now_->compensated = out.scope.finishing.moves;
   begin_version(*now_);
   given->shifts = now_->path->shifts();
   given->fractions = FeedLever::fractions(*now_->path);
@@ -98,30 +98,30 @@ void Loop::start(CompensationResult& out) {
   first_observed_ = given->observed;
   choose_bounds(*given);
   last_ = best_ = allowed_ = given_trial_ = given;
-  out.reference = job_.compensation.reference;
-  out.own_depth_limit = job_.compensation.depth_limit_um().has_value();
+  out.scope.reference = job_.compensation.reference;
+  out.safety.own_depth_limit = job_.compensation.depth_limit_um().has_value();
   depth_limit_um_ = job_.compensation.depth_limit_um().value_or(0);
-  if (!out.own_depth_limit)
+  if (!out.safety.own_depth_limit)
     depth_limit_um_ =
         std::min(deepest_limit_um(setup_.target.blank),
                  default_depth_limit_um(*now_->path, given->observed, fit_options(), 1000 * tolerance_mm()));
-  out.depth_limit_um = depth_limit_um_;
-  out.plain_before = figures_of(*given);
-  out.feed_before = setup_.program.feed;
-  given_s_ = out.feed_before.time_s;
-  out.surface_before = last_->surface;
-  out.loads_before = last_->loads;
+  out.safety.depth_limit_um = depth_limit_um_;
+  out.figures.plain_before = figures_of(*given);
+  out.figures.feed_before = setup_.program.feed;
+  given_s_ = out.figures.feed_before.time_s;
+  out.surfaces.before = last_->surface;
+  out.surfaces.loads_before = last_->loads;
   record(out, {});
-  out.feed_unusable = feed_unusable_;
+  out.scope.feed_unusable = feed_unusable_;
   look_out(out);
-  out.depth_before = depth_of(last_->surface, last_->observed, depth_limit_um_, true);
+  out.safety.before = depth_of(last_->surface, last_->observed, depth_limit_um_, true);
 }
 
 /// What shifts are expected to leave, before the first of them is predicted.
 void Loop::look_out(CompensationResult& out) {
   const JudgedErrors left = errors_after_shift(*given_trial_, 1);
-  out.outlook = {out.rounds.front().error_um.p95, p95_of(left.error_um, left.area_mm2)};
-  if (options_.outlook) options_.outlook(out.outlook);
+  out.figures.outlook = {out.rounds.front().error_um.p95, p95_of(left.error_um, left.area_mm2)};
+  if (options_.outlook) options_.outlook(out.figures.outlook);
 }
 
 /// No place may become worse than given. Where that would raise the 95th percentile by more than a quarter, as where
@@ -165,13 +165,13 @@ std::vector<double> Loop::bounds_of_bow(const Trial& given) {
 }
 
 void Loop::read_given(const simulate::Prediction& prediction, CompensationResult& out) {
-  out.doubts = simulate::doubts(job_, setup_.program, prediction);
-  if (simulate::beyond_model(prediction)) throw BeyondModel(fmt::format("{}", fmt::join(out.doubts, "; ")));
-  out.own_target = setup_.own_target();
-  out.unseen_mm2 = prediction.unseen_mm2;
-  out.border_mm2 = prediction.border_mm2;
-  out.not_judged_mm2 = prediction.not_judged_mm2;
-  out.between = prediction.between;
+  out.verdict.doubts = simulate::doubts(job_, setup_.program, prediction);
+  if (simulate::beyond_model(prediction)) throw BeyondModel(fmt::format("{}", fmt::join(out.verdict.doubts, "; ")));
+  out.scope.own_target = setup_.own_target();
+  out.figures.unseen_mm2 = prediction.unseen_mm2;
+  out.figures.border_mm2 = prediction.border_mm2;
+  out.figures.not_judged_mm2 = prediction.not_judged_mm2;
+  out.figures.between = prediction.between;
 }
 
 void Loop::check_levers(const std::vector<bool>& selected) {

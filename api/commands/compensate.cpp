@@ -73,13 +73,13 @@ CompensatedJob compensate_job(const machine::Job& given, const CompensateRequest
   if (request.header || request.header_hash)
     options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };
   out.result = compensate::compensate(job, diagnostics, options);
-  out.result.measured = fit;
+  out.result.uncertainty.measured = fit;
   feedmodel::check_range(moves_of(SourceText::read(job.program), job), job.program, job.machine, diagnostics);
   return out;
 }
 
 void write_compensated(const std::string& path, const machine::Job& job, const compensate::CompensationResult& result) {
-  write_file(path, result.text);
+  write_file(path, result.emitted.text);
   std::error_code ec;
   if (!std::filesystem::is_regular_file(path, ec)) return;
   write_file(compensate::record_path(path), compensate::record_json(compensate::make_record(job, result, path)));
