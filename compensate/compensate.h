@@ -13,12 +13,12 @@
 //                  path and from row to row (row_links), divided by the local sensitivity (sensitivity: a deeper cut
 //                  deflects more). splits decides where lines get more nodes.
 // 4. trial         emits the shifted program (nc/emit), reads the text again, times, cuts and judges it.
-// 5. step_model    decides whether another round is worth its prediction, and with which step.
+// 5. judge         decides whether another round is worth its prediction, and with which step.
 //
 // Afterwards the guard lifts the path where the surface lies deeper in the part than the limit, the levers lower feeds
-// (feed_lever, feed_plan, least_feed) or repeat runs (passes) where the job allows it, and choice takes the best round
-// within the limits. verdict, error_split, safety, path_quality, surface_steps and uncertainty describe what comes out;
-// verify judges an emitted program from its text. loop.h has the state of all this and says where each step is.
+// (feed_lever, feed_choice) or repeat runs (passes) where the job allows it, and judge takes the best round
+// within the limits. remaining_error, error_split, safety, path_quality and uncertainty describe what comes out;
+// verify judges an emitted program from its text. state.h has the state of all this and says where each step is.
 //
 // The reference is error_um: the machined surface minus the one that the commanded path leaves with a rigid tool, along
 // the normal. All lengths are mm unless the name says otherwise. docs/compensation.md has equations and figures.
@@ -33,12 +33,10 @@
 #include "compensate/measured.h"
 #include "compensate/path_quality.h"
 #include "compensate/recheck.h"
+#include "compensate/remaining_error.h"
 #include "compensate/safety.h"
-#include "compensate/surface_steps.h"
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
-#include "compensate/verdict.h"
-#include "compensate/worse.h"
 #include "machine/job.h"
 #include "removal/stock.h"
 #include "simulate/setup.h"

@@ -1,5 +1,5 @@
 // How far the feed lever may lower the feed: at corners that the control passes more slowly, further.
-#include "compensate/least_feed.h"
+#include "compensate/feed_lever.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Plain figures of what is in reach, and the verdict on them.
-#include "compensate/verdict.h"
+#include "compensate/remaining_error.h"
 
 #include <gtest/gtest.h>
 

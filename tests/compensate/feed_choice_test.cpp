@@ -1,5 +1,5 @@
 // Chosen feeds against every combination of feeds, where there are few enough to try them all.
-#include "compensate/feed_plan.h"
+#include "compensate/feed_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "compensate/feed_plan.h"
+#include "compensate/feed_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "compensate/verdict.h"
+#include "compensate/remaining_error.h"
 
 #include <algorithm>
 #include <array>

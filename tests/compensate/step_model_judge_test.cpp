@@ -1,4 +1,4 @@
-#include "compensate/step_model.h"
+#include "compensate/judge.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "compensate/not_emitted.h"
+#include "compensate/outcome.h"
 
 #include <gtest/gtest.h>
 

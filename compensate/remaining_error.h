@@ -6,7 +6,7 @@
 
 #include "compensate/attribution.h"
 #include "compensate/error_split.h"
-#include "compensate/program_line.h"
+#include "compensate/safety.h"
 #include "machine/job.h"
 #include "removal/form_error.h"
 

@@ -1,4 +1,4 @@
-#include "compensate/guard.h"
+#include "compensate/gouge_guard.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // The round that is written is the best one that keeps the limits, and never one that is worse than the given program.
-#include "compensate/choice.h"
+#include "compensate/judge.h"
 
 #include <array>
 #include <vector>
