@@ -71,14 +71,6 @@ void expect_kept_promises(unsigned seed) {
   EXPECT_LE(c.safety.after.gouge_depth_p999_um, std::max(c.safety.depth_limit_um, c.safety.before.gouge_depth_p999_um));
   EXPECT_LE(c.figures.feed_after.time_s, 1.104 * c.figures.feed_before.time_s) << "the budget by default, and its room";
   ASSERT_EQ(c.surfaces.before.size(), c.surfaces.after.size());
-  FILE* f = fopen(fmt::format("/tmp/comp/dump/{}.csv", seed).c_str(), "w");
-  for (std::size_t i = 0; i < c.surfaces.before.size(); ++i) {
-    const auto &b = c.surfaces.before[i], &a = c.surfaces.after[i];
-    fmt::print(f, "{},{},{},{},{},{},{},{},{},{},{},{}\n", b.place_mm.x(), b.place_mm.y(), b.place_mm.z(), b.normal.x(),
-               b.normal.y(), b.normal.z(), 1000 * b.error_mm, 1000 * a.error_mm, b.area_mm2, b.machined_stamp,
-               a.machined_stamp, b.target_stamp);
-  }
-  fclose(f);
   double worse_um = 0, area = 0, worse_area = 0, over_area = 0;
   for (std::size_t i = 0; i < c.surfaces.before.size(); ++i) {
     const auto &before = c.surfaces.before[i], &after = c.surfaces.after[i];
