@@ -93,17 +93,17 @@ CompensatedJob compensate_job(const machine::Job& given, const CompensateOptions
   if (request.header || request.header_hash)
     options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };
   out.result = compensate::compensate(job, diagnostics, options);
-  out.result.measured = fit;
+  out.result.uncertainty.measured = fit;
   feedmodel::check_range(out.result.given.commanded(), job.program, job.machine, diagnostics);
   return out;
 }
 
 std::vector<CompensatedPoint> points_of(const CompensationResult& c) {
   std::vector<CompensatedPoint> out;
-  out.reserve(c.surface_before.size());
-  for (std::size_t i = 0; i < c.surface_before.size(); ++i) {
-    const removal::SurfacePoint& p = c.surface_before[i];
-    const double after_mm = i < c.surface_after.size() ? c.surface_after[i].error_mm : p.error_mm;
+  out.reserve(c.surfaces.before.size());
+  for (std::size_t i = 0; i < c.surfaces.before.size(); ++i) {
+    const removal::SurfacePoint& p = c.surfaces.before[i];
+    const double after_mm = i < c.surfaces.after.size() ? c.surfaces.after[i].error_mm : p.error_mm;
     out.push_back({p.place_mm.x(), p.place_mm.y(), p.place_mm.z(), p.normal.x(), p.normal.y(), p.normal.z(),
                    1000 * p.error_mm, 1000 * after_mm, p.area_mm2});
   }
@@ -113,26 +113,26 @@ std::vector<CompensatedPoint> points_of(const CompensationResult& c) {
 /// All but diagnostics and json.
 CompensateResult result_of(const CompensationResult& c, const machine::CompensationSettings& asked) {
   const report::VerdictText verdict = report::verdict_text(c, asked);
-  CompensateResult out{.program = c.text,
-                       .better = c.better,
+  CompensateResult out{.program = c.emitted.text,
+                       .better = c.verdict.better,
                        .success = verdict.success,
                        .headline = verdict.headline,
                        .reasons = verdict.reasons,
-                       .before_um = api::figures_of(c.before_um),
-                       .after_um = api::figures_of(c.after_um),
+                       .before_um = api::figures_of(c.figures.before_um),
+                       .after_um = api::figures_of(c.figures.after_um),
                        .best_round = c.best,
-                       .stop = compensate::to_string(c.stop),
-                       .blocks_before = c.blocks_before,
-                       .blocks_after = c.blocks_after,
-                       .blocks_changed = c.blocks_changed,
-                       .max_shift_mm = c.max_shift_mm,
+                       .stop = compensate::to_string(c.verdict.stop),
+                       .blocks_before = c.emitted.blocks_before,
+                       .blocks_after = c.emitted.blocks_after,
+                       .blocks_changed = c.emitted.blocks_changed,
+                       .max_shift_mm = c.path.max_shift_mm,
                        .surface = points_of(c)};
   for (const auto& round : c.rounds)
     out.rounds.push_back(
         {api::figures_of(round.error_um), round.largest_shift_mm, round.machine_time_s, round.repeated});
   for (const auto& point : c.time_points) out.time_points.push_back({point.allowed_percent, point.round});
-  for (const auto& run : c.repeated) out.repeated.push_back({run.first_line, run.last_line});
-  out.pass_allowance_mm = c.pass_allowance_mm;
+  for (const auto& run : c.passes.runs) out.repeated.push_back({run.first_line, run.last_line});
+  out.pass_allowance_mm = c.passes.allowance_mm;
   return out;
 }
 
@@ -164,14 +164,14 @@ std::string page_of(const machine::Job& job, const CompensationResult& result, c
   };
   const auto before = machined(SourceText::read(job.program));
   machine::Job emitted_job = job;
-  if (job.operations.given() && !result.block_of_line.empty())
-    emitted_job.operations = compensate::moved_ranges(result.operations, result.block_of_line);
-  const auto after = simulate::simulate_motion(SourceText(job.program, result.text), emitted_job, {}, ignored);
+  if (job.operations.given() && !result.emitted.block_of_line.empty())
+    emitted_job.operations = compensate::moved_ranges(result.scope.operations, result.emitted.block_of_line);
+  const auto after = simulate::simulate_motion(SourceText(job.program, result.emitted.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
-  if (!result.repeated_text.empty()) from = machined(SourceText(job.program, result.repeated_text)).moves_in_part();
-  return report::html_report(report::compensate_report(job, result, {before, rows(before), result.loads_before},
-                                                       {after, rows(after), result.loads_after}, output, diagnostics,
-                                                       from ? &*from : nullptr));
+  if (!result.passes.text.empty()) from = machined(SourceText(job.program, result.passes.text)).moves_in_part();
+  return report::html_report(report::compensate_report(
+      job, result, {before, rows(before), result.surfaces.loads_before},
+      {after, rows(after), result.surfaces.loads_after}, output, diagnostics, from ? &*from : nullptr));
 }
 
 /// The emitted program, and beside it the record by which it can be judged again and what is measured of it; a pipe has
@@ -182,7 +182,7 @@ void write_files(const std::string& path, const CompensatedJob& done,
   const auto is_file = [&] { return fs::is_regular_file(path, ec); };
   try_to_write(
       [&] {
-        write_file(path, done.result.text);
+        write_file(path, done.result.emitted.text);
         if (is_file())
           write_file(compensate::record_path(path),
                      compensate::record_json(compensate::make_record(done.job, done.result, path)));
@@ -231,15 +231,15 @@ CompensateResult api::compensate(const Job& given, const CompensateOptions& opti
     const double compute_s = run.seconds();
     const CompensationResult& c = done.result;
     Diagnostics all = found, failed;
-    for (const std::string& name : c.unknown_parameters) all.add(unknown_parameter(name, given.path()));
+    for (const std::string& name : c.uncertainty.unknown_parameters) all.add(unknown_parameter(name, given.path()));
     run.settle(all);
-    const auto features_before = report::features_of(done.job, c.surface_before),
-               features_after = report::features_of(done.job, c.surface_after);
+    const auto features_before = report::features_of(done.job, c.surfaces.before),
+               features_after = report::features_of(done.job, c.surfaces.after);
     const std::vector<std::string> assumed = machine::assumptions(given.impl().job);
     result = result_of(c, done.job.compensation);
-    result.unknown_parameters = c.unknown_parameters;
+    result.unknown_parameters = c.uncertainty.unknown_parameters;
     result.diagnostics = all.all();
-    result.written = !options.output.empty() && !options.dry_run && (c.better || options.keep_anyway);
+    result.written = !options.output.empty() && !options.dry_run && (c.verdict.better || options.keep_anyway);
     if (result.written) write_files(options.output, done, features_after, failed);
     result.json = machine::with_assumptions(
         report::with_features(report::compensate_json(c, done.job.compensation, compute_s),

@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 
-#include "compensate/expected.h"
 #include "compensate/hidden_rows.h"
 #include "removal/cutter.h"
 
@@ -75,7 +74,8 @@ constexpr double kHidden_mm = 0.0005;  // above the surface: the owner did not c
 class Places {
  public:
   Places(const ShiftPath& path, const simulate::SimulatedProgram& given, const simulate::SimulatedProgram& emitted,
-         const MoveMap& map, std::span<const simulate::PathFraction> own_target, const std::vector<bool>& first_cuts)
+         const nc::MoveMap& map, std::span<const simulate::PathFraction> own_target,
+         const std::vector<bool>& first_cuts)
       : path_(path), given_(given), emitted_(emitted), map_(map), own_target_(own_target), first_cuts_(first_cuts) {}
 
   /// Returns nothing where the point's stamp belongs to no move that may be shifted.
@@ -97,14 +97,14 @@ class Places {
   }
 
  private:
-  std::optional<ShiftPath::PointInterval> find(const MoveMap::MovePlace& at) const {
+  std::optional<ShiftPath::PointInterval> find(const nc::MoveMap::MovePlace& at) const {
     if (!path_.contains(at.move) || !given_.moves_in_part().moves[at.move].editable) return std::nullopt;
     return path_.find(at.move, at.fraction);
   }
 
   const ShiftPath& path_;
   const simulate::SimulatedProgram &given_, &emitted_;
-  const MoveMap& map_;
+  const nc::MoveMap& map_;
   std::span<const simulate::PathFraction> own_target_;
   const std::vector<bool>& first_cuts_;
 };
@@ -113,7 +113,7 @@ class Places {
 
 std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const simulate::Setup& given,
                                                     const removal::SurfacePoint& point) {
-  const MoveMap same;
+  const nc::MoveMap same;
   return Places(path, given.program, given.program, same, given.own_stamps(), {}).owner(point);
 }
 
@@ -131,7 +131,7 @@ void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPa
 }
 
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
-                 const simulate::SimulatedProgram& emitted, const MoveMap& map,
+                 const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,
                  std::span<const Vec3> bending, const std::vector<bool>& first_cuts) {
   const Places places(path, given, emitted, map, own_target, first_cuts);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "compensate/fit_shift.h"
-#include "compensate/move_map.h"
 #include "compensate/shift_path.h"
+#include "nc/move_map.h"
 #include "simulate/setup.h"
 
 namespace camber::compensate {
@@ -56,7 +56,7 @@ double foreign_fraction(const Observed& observed);
 /// `path`. `bending` (one per stamp of the nominal path, or empty: no hidden points): see expected.h. `first_cuts` (one
 /// per move of `given`, or empty): moves that are cut again; what they cut last counts as not cut.
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
-                 const simulate::SimulatedProgram& emitted, const MoveMap& map,
+                 const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,
                  std::span<const Vec3> bending = {}, const std::vector<bool>& first_cuts = {});
 

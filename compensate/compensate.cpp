@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "compensate/loop.h"
+#include "compensate/judge.h"
+#include "compensate/measure.h"
+#include "compensate/outcome.h"
+#include "compensate/rounds.h"
+#include "compensate/spend_time.h"
 
 namespace camber::compensate {
 
@@ -34,14 +38,14 @@ CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics,
   diagnostics.throw_if_errors();
 
   CompensationResult out;
-  Loop loop(job, diagnostics, options);
-  loop.start(out);
-  loop.converge(out);
-  loop.spend_time(out);
-  loop.stay_out_of_part(out);
-  loop.choose(out);
-  loop.finish(out);
-  loop.check(out);
+  Task task = open_task(job, options, diagnostics);
+  State state = measure_given(task, out);
+  converge(task, state);
+  spend_time(task, state);
+  stay_out_of_part(task, state);
+  const bool better = choose(task, state);
+  conclude(task, state, better, out);
+  check_outcome(task, state, out);
   return out;
 }
 

@@ -13,12 +13,12 @@
 //                  path and from row to row (row_links), divided by the local sensitivity (sensitivity: a deeper cut
 //                  deflects more). splits decides where lines get more nodes.
 // 4. trial         emits the shifted program (nc/emit), reads the text again, times, cuts and judges it.
-// 5. step_model    decides whether another round is worth its prediction, and with which step.
+// 5. judge         decides whether another round is worth its prediction, and with which step.
 //
 // Afterwards the guard lifts the path where the surface lies deeper in the part than the limit, the levers lower feeds
-// (feed_lever, feed_plan, least_feed) or repeat runs (passes) where the job allows it, and choice takes the best round
-// within the limits. verdict, error_split, safety, path_quality, surface_steps and uncertainty describe what comes out;
-// verify judges an emitted program from its text. loop.h has the state of all this and says where each step is.
+// (feed_lever, feed_choice) or repeat runs (passes) where the job allows it, and judge takes the best round
+// within the limits. remaining_error, error_split, safety, path_quality and uncertainty describe what comes out;
+// verify judges an emitted program from its text. state.h has the state of all this and says where each step is.
 //
 // The reference is error_um: the machined surface minus the one that the commanded path leaves with a rigid tool, along
 // the normal. All lengths are mm unless the name says otherwise. docs/compensation.md has equations and figures.
@@ -33,12 +33,10 @@
 #include "compensate/measured.h"
 #include "compensate/path_quality.h"
 #include "compensate/recheck.h"
+#include "compensate/remaining_error.h"
 #include "compensate/safety.h"
-#include "compensate/surface_steps.h"
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
-#include "compensate/verdict.h"
-#include "compensate/worse.h"
 #include "machine/job.h"
 #include "removal/stock.h"
 #include "simulate/setup.h"
@@ -86,59 +84,102 @@ struct Outlook {
   double achievable_p95_um = 0;  ///< the same where shifts take away all that they can
 };
 
-struct CompensationResult {
-  kinematics::MachineProgram given;          ///< the program that was compensated, as it was read
-  std::string text;                          ///< the emitted program of the best round
-  std::vector<std::uint32_t> block_of_line;  ///< by line of `text`, see nc::Emission; empty: the given program
-  std::vector<LineRole> lines;               ///< one per line of the given program
-  machine::Operations operations;            ///< the job's, as lines of the given program
-  bool own_target = true;                    ///< the given program is the target
-  bool better = true;  ///< the round is better than the given program, or that is good, and within limits
+/// What of the given program is compensated, and against what it is judged.
+struct Scope {
+  Finishing finishing;
+  std::vector<LineRole> lines;     ///< one per line of the given program
+  machine::Operations operations;  ///< the job's, as lines of the given program
+  bool own_target = true;          ///< the given program is the target
   machine::Reference reference = machine::Reference::commanded;
+  bool feed_unusable = false;  ///< the levers by default have feed, but no F word can be changed
+};
+
+/// Error and machine time of the given program and of the emitted one.
+struct FormFigures {
   removal::ErrorFigures before_um, after_um;  ///< judged: rounds[0] and rounds[best]
   PlainFigures plain_before, plain_after;
-  bool within_tolerance = false;  ///< the emitted program
+  ErrorSplit split_before, split_after;
   Outlook outlook;
-  bool feed_unusable = false;    ///< the levers by default have feed, but no F word can be changed
-  double depth_limit_um = 0;     ///< the job's, or default_depth_limit_um
-  bool own_depth_limit = false;  ///< the job gives one
-  WorsePlaces worse;             ///< than given, of the emitted program
-  double unseen_mm2 = 0;         ///< area of the nominal surface without a point
+  WorsePlaces worse;      ///< than given, of the emitted program
+  double unseen_mm2 = 0;  ///< area of the nominal surface without a point
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
+  feedmodel::FeedSummary feed_before, feed_after;
+};
+
+/// The emitted program of the best round.
+struct WrittenProgram {
+  std::string text;
+  std::vector<std::uint32_t> block_of_line;  ///< by line of `text`, see nc::Emission; empty: the given program
+  std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
+};
+
+/// Whether the emitted program is good, and what keeps it from being better.
+struct CompensationVerdict {
+  bool better = true;  ///< the round is better than the given program, or that is good, and within limits
+  bool within_tolerance = false;
+  bool settled = true;  ///< every static solution of the first and the best round did
+  Stop stop = Stop::rounds;
   std::vector<CauseFigure> causes;   ///< causes of the remaining error, where it is over the tolerance
   std::vector<BindingLimit> limits;  ///< limits that kept the path from the shifts that its error asks for
-  ErrorSplit split_before, split_after;
-  std::vector<Round> rounds;             ///< rounds[0]: the given program
-  std::size_t best = 0;                  ///< index into rounds
-  std::vector<TimePoint> time_points{};  ///< only with a lever that takes time; ascending
-  std::vector<RepeatedRun> repeated{};   ///< runs of the emitted program
-  double pass_allowance_mm = 0;          ///< allowance that the first of two cuts leaves; 0: no run is repeated
-  std::string repeated_text{};           ///< the program whose path was shifted, where runs are cut twice; else empty
-  Stop stop = Stop::rounds;
-  std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
+  /// Reasons why the figures of the given or the emitted program are not reliable (simulate/verdict.h); empty: none.
+  std::vector<std::string> doubts;
+};
+
+/// Runs of the emitted program that are cut twice.
+struct SecondCuts {
+  std::vector<RepeatedRun> runs{};
+  double allowance_mm = 0;  ///< left by the first of two cuts; 0: no run is repeated
+  std::string text{};       ///< the program whose path was shifted, where runs are cut twice; else empty
+};
+
+/// Depth into the part.
+struct Safety {
+  double depth_limit_um = 0;     ///< the job's, or default_depth_limit_um
+  bool own_depth_limit = false;  ///< the job gives one
+  Depth before, after;           ///< of compensated moves
+  Depth others;                  ///< of moves that are not compensated
+  Depth without_bending;         ///< of the emitted program
+  bool within_part = true;       ///< `after` is within the depth limit
+};
+
+/// Shape of the emitted path, and what it does to the surface from row to row.
+struct PathFigures {
   double max_shift_mm = 0;
-  std::vector<removal::SurfacePoint> surface_before, surface_after;  ///< the same points, in the same order
-  std::vector<simulate::StampLoad> loads_before, loads_after;        ///< loads of the given and of the emitted program
-  removal::StockShape stock;                                         ///< left by the target program, for a picture
-  feedmodel::FeedSummary feed_before, feed_after;
-  bool settled = true;  ///< every static solution of the first and the best round did
-  Finishing finishing;
-  PathQuality quality;  ///< of the emitted program
+  PathQuality quality;
   RowSteps row_steps;
   SurfaceSteps surface_steps;
-  double row_turn_rad = 0;          ///< between neighbouring rows of one sense, held like the angles between blocks
-  Depth depth_before, depth_after;  ///< depth into the part, compensated moves
-  Depth depth_others;               ///< depth of moves that are not compensated
-  Depth depth_without_bending;      ///< of the emitted program
-  bool within_part = true;          ///< depth_after is within the depth limit
-  std::vector<Recheck> rechecks;    ///< one per voxel asked for
+  double row_turn_rad = 0;  ///< between neighbouring rows of one sense, held like the angles between blocks
+};
+
+struct UncertaintyFigures {
+  std::vector<Recheck> rechecks;  ///< one per voxel asked for
   std::optional<Band> band;
   std::vector<std::string> unknown_parameters;  ///< parameters with a standard error that this job does not have
   std::optional<MeasuredFit> measured;
-  /// Reasons why the figures of the given or the emitted program are not reliable (simulate/verdict.h); empty: none.
-  std::vector<std::string> doubts;
+};
+
+struct Surfaces {
+  std::vector<removal::SurfacePoint> before, after;            ///< the same points, in the same order
+  std::vector<simulate::StampLoad> loads_before, loads_after;  ///< loads of the given and of the emitted program
+  removal::StockShape stock;                                   ///< left by the target program, for a picture
+};
+
+struct CompensationResult {
+  kinematics::MachineProgram given;  ///< the program that was compensated, as it was read
+  Scope scope;
+  std::vector<Round> rounds;             ///< rounds[0]: the given program
+  std::size_t best = 0;                  ///< index into rounds
+  std::vector<TimePoint> time_points{};  ///< only with a lever that takes time; ascending
+  WrittenProgram emitted;
+  FormFigures figures;
+  CompensationVerdict verdict;
+  SecondCuts passes;
+  Safety safety;
+  PathFigures path;
+  UncertaintyFigures uncertainty;
+  Surfaces surfaces;
 };
 
 /// Thrown where the given program lies beyond the model: there is nothing to compensate by. what() says why.
@@ -147,12 +188,12 @@ using camber::BeyondModel;
 struct CompensateOptions {
   simulate::Progress progress;
   std::function<void(const Outlook&)> outlook{};  ///< called once, before the rounds
-  std::size_t max_stock_crossings = 0;            ///< size of Compensation::stock; 0: none
+  std::size_t max_stock_crossings = 0;            ///< size of Surfaces::stock; 0: none
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
   /// Instead of the job's.
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
-  std::vector<ParameterGroup> uncertainty{};  ///< parameters for Compensation::band
+  std::vector<ParameterGroup> uncertainty{};  ///< parameters for UncertaintyFigures::band
   simulate::Predictor predictor = simulate::predict;
   /// Comment lines for the emitted program, asked for when all else is known; empty: none.
   std::function<std::string(const CompensationResult&)> header{};

@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "compensate/attribution.h"
-#include "compensate/feed_plan.h"
+#include "compensate/feed_choice.h"
 #include "compensate/shift_path.h"
+#include "machine/machine.h"
+#include "nc/move.h"
 
 namespace camber::compensate {
 
@@ -42,5 +44,11 @@ class FeedLever {
   std::vector<std::size_t> unit_of_;  ///< unit of the piece that ends at each point
   FeedModel model_;
 };
+
+/// The lowest fraction of the programmed feed for the piece of `path` that ends at each point: `least`; within 2 mm of
+/// path of a corner that the control passes more slowly, the fraction that it passes it with, but no less than half of
+/// `least`. The chip there is no thinner than the given program's. Stops do not count. `path` is one of `program`'s.
+std::vector<double> least_feeds(const ShiftPath& path, const nc::Interpretation& program,
+                                const machine::Machine& machine, double least);
 
 }  // namespace camber::compensate

@@ -75,10 +75,10 @@ std::string header_lines(const machine::Job& job, const CompensationResult& c, c
   std::string out = fmt::format("CAMBER {} - PATH COMPENSATED FOR TOOL DEFLECTION\n", version);
   fmt::format_to(std::back_inserter(out),
                  "PREDICTED ERROR RMS {:.1f} UM BEFORE, {:.1f} UM AFTER, 95 PERCENT WITHIN {:.1f} UM\n",
-                 c.before_um.rms, c.after_um.rms, c.after_um.p95);
+                 c.figures.before_um.rms, c.figures.after_um.rms, c.figures.after_um.p95);
   fmt::format_to(std::back_inserter(out), "LARGEST SHIFT {:.4f} MM OF {:g} ALLOWED, TOLERANCE {:g} UM\n",
-                 c.max_shift_mm, job.compensation.max_shift_mm, job.compensation.tolerance_um);
-  for (const auto& o : c.finishing.operations) {
+                 c.path.max_shift_mm, job.compensation.max_shift_mm, job.compensation.tolerance_um);
+  for (const auto& o : c.scope.finishing.operations) {
     if (o.compensated_moves == 0) continue;
     const machine::Tool& t = job.tools.at(o.tool);
     fmt::format_to(std::back_inserter(out), "T{} D{:g} OVERHANG {:g} E {:g} GPA, {} FLUTES\n", t.number, t.diameter_mm,

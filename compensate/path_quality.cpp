@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -24,21 +25,48 @@ std::optional<double> given_turn(const nc::Interpretation& given, std::uint32_t 
   return angle_between(nc::direction_at(given, from, 1), nc::direction_at(given, to, 0));
 }
 
+std::vector<std::optional<double>> mean_errors_mm(const ShiftPath& path, const Observed& observed) {
+  struct Sums {
+    double error = 0, area = 0;
+  };
+  std::vector<Sums> sums(path.points().size());
+  for (std::size_t i = 0; i < observed.points.size(); ++i) {
+    if (!observed.compensated[i]) continue;
+    const Observation& o = observed.points[i];
+    const auto add = [&](std::size_t at, double fraction) {
+      sums[at].error += fraction * o.area_mm2 * o.error_mm;
+      sums[at].area += fraction * o.area_mm2;
+    };
+    add(o.place.lower, 1 - o.place.upper_fraction);
+    add(o.place.lower + 1, o.place.upper_fraction);
+  }
+  std::vector<std::optional<double>> out(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    if (sums[i].area > 0) out[i] = sums[i].error / sums[i].area;
+  return out;
+}
+
+double p95(std::vector<double> values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 }  // namespace
 
 PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool>& selected,
-                         const nc::Interpretation& emitted, const MoveMap& map, double block_time_s,
+                         const nc::Interpretation& emitted, const nc::MoveMap& map, double block_time_s,
                          double angle_bound_rad) {
   PathQuality out;
   out.shortest_mm = std::numeric_limits<double>::infinity();
   const auto split = [&](std::size_t m) {
-    const MoveMap::MovePlace first = map.given(static_cast<std::uint32_t>(m), 0),
-                             last = map.given(static_cast<std::uint32_t>(m), 1);
+    const nc::MoveMap::MovePlace first = map.given(static_cast<std::uint32_t>(m), 0),
+                                 last = map.given(static_cast<std::uint32_t>(m), 1);
     return last.fraction - first.fraction < 1 - 1e-9;
   };
   for (std::size_t m = 0; m < emitted.moves.size(); ++m) {
     const nc::Move& move = emitted.moves[m];
-    const MoveMap::MovePlace end = map.given(static_cast<std::uint32_t>(m), 1);
+    const nc::MoveMap::MovePlace end = map.given(static_cast<std::uint32_t>(m), 1);
     if (!cuts(move) || !selected[end.move]) continue;
     const double length = nc::length_mm(emitted, move);
     if (split(m)) {
@@ -49,7 +77,7 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
     while (next < emitted.moves.size() && cuts(emitted.moves[next]) && nc::length_mm(emitted, emitted.moves[next]) <= 0)
       ++next;
     if (length <= 0 || next >= emitted.moves.size() || !cuts(emitted.moves[next])) continue;
-    const MoveMap::MovePlace start = map.given(static_cast<std::uint32_t>(next), 0);
+    const nc::MoveMap::MovePlace start = map.given(static_cast<std::uint32_t>(next), 0);
     if (!selected[start.move]) continue;
     const auto before = given_turn(given, end.move, start.move);
     if (!before) continue;
@@ -104,6 +132,27 @@ RowSteps row_steps(const ShiftPath& path, double reach_mm) {
   if (steps.empty()) return {};
   std::sort(steps.begin(), steps.end());
   return {steps[static_cast<std::size_t>(0.95 * static_cast<double>(steps.size() - 1))], steps.back(), steps.size()};
+}
+
+SurfaceSteps surface_steps(const ShiftPath& path, std::span<const RowLink> pairs, const Observed& before,
+                           const Observed& after) {
+  const auto was = mean_errors_mm(path, before), is = mean_errors_mm(path, after);
+  SurfaceSteps out;
+  std::vector<double> steps_before, steps_after;
+  for (const RowLink& l : pairs) {
+    if (!was[l.a] || !was[l.b] || !is[l.a] || !is[l.b]) continue;
+    steps_before.push_back(std::abs(*was[l.a] - *was[l.b]));
+    steps_after.push_back(std::abs(*is[l.a] - *is[l.b]));
+    out.growth_rad = std::max(
+        out.growth_rad, std::atan2(steps_after.back(), l.distance_mm) - std::atan2(steps_before.back(), l.distance_mm));
+  }
+  out.pairs = steps_before.size();
+  if (out.pairs == 0) return out;
+  out.before_max_mm = *std::max_element(steps_before.begin(), steps_before.end());
+  out.after_max_mm = *std::max_element(steps_after.begin(), steps_after.end());
+  out.before_p95_mm = p95(std::move(steps_before));
+  out.after_p95_mm = p95(std::move(steps_after));
+  return out;
 }
 
 }  // namespace camber::compensate

@@ -5,15 +5,15 @@
 
 #include <fmt/format.h>
 
+#include "compensate/remaining_error.h"
 #include "compensate/safety.h"
-#include "compensate/verdict.h"
 
 namespace camber::compensate {
 
-Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
-                const ShiftPath& path, const FitShiftOptions& options, const RecheckTarget& made_by,
-                const simulate::Progress& progress) {
-  machine::Job other = job;
+Recheck recheck(double voxel_mm, const ShiftedProgram& of, const EmittedPair& emitted, const ShiftPath& path,
+                const FitShiftOptions& options, const RecheckTarget& made_by, const simulate::Progress& progress) {
+  const simulate::SimulatedProgram& given = *of.program;
+  machine::Job other = of.job;
   other.simulation.voxel_mm = voxel_mm;
   Diagnostics diagnostics;
   simulate::Target target = simulate::make_target(other, made_by.program, diagnostics);
@@ -27,19 +27,20 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
     ErrorSplit split;
     removal::ErrorFigures error_um;
   };
-  const auto stamps = given.own_target() ? std::span(target.stamps) : std::span<const simulate::PathFraction>();
+  const auto stamps = of.own_target ? std::span(target.stamps) : std::span<const simulate::PathFraction>();
   std::vector<bool> reach;
   const auto judge = [&](const Emitted* program, const std::string& what) {
-    const auto& machined = program ? program->program : given.program;
-    auto prediction = simulate::predict_surface(given.predictor, other, target, machined, progress,
+    const auto& machined = program ? program->program : given;
+    auto prediction = simulate::predict_surface(of.predictor, other, target, machined, progress,
                                                 fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
-    Observed observed = observe(path, job, given.program, machined, program ? program->map : MoveMap(),
-                                prediction.surface, stamps, {}, made_by.first_cuts);
-    if (reach.empty()) reach = reach_of(path, given.program.moves_in_part(), observed, prediction.surface, stamps);
+    Observed observed = observe(path, of.job, given, machined, program ? program->map : nc::MoveMap(),
+                                prediction.surface, stamps, {}, of.first_cuts);
+    if (reach.empty()) reach = reach_of(path, given.moves_in_part(), observed, prediction.surface, stamps);
     observed.reach = reach;
     const ErrorSplit split = split_error(path, observed, own);
-    const PlainFigures plain = plain_figures(prediction.surface, prediction.total_error_mm, observed, job.compensation);
-    return Judged{std::move(prediction), std::move(observed), split, judged_of(plain, job.compensation.reference)};
+    const PlainFigures plain =
+        plain_figures(prediction.surface, prediction.total_error_mm, observed, of.job.compensation);
+    return Judged{std::move(prediction), std::move(observed), split, judged_of(plain, of.job.compensation.reference)};
   };
   Recheck out;
   out.voxel_mm = voxel_mm;
@@ -56,16 +57,16 @@ Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup&
   return out;
 }
 
-std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Setup& given,
-                               const Emitted* emitted, const std::vector<removal::SurfacePoint>& after,
-                               std::vector<std::string>& unknown, const simulate::Progress& progress) {
-  machine::Job other = moved(job, group, unknown);
+std::vector<double> changes_mm(const ParameterGroup& group, const ShiftedProgram& of, const Emitted* emitted,
+                               const std::vector<removal::SurfacePoint>& after, std::vector<std::string>& unknown,
+                               const simulate::Progress& progress) {
+  machine::Job other = moved(of.job, group, unknown);
   if (emitted) other.operations = emitted->operations;
   Diagnostics repeated;
-  const auto& text = (emitted ? emitted->program : given.program).text().source;
+  const auto& text = (emitted ? emitted->program : *of.program).text().source;
   const auto program = simulate::simulate_motion(text, other, {}, repeated);
   const auto prediction =
-      simulate::predict_surface(given.predictor, other, given.target, program, progress, "uncertainty: " + group.name);
+      simulate::predict_surface(of.predictor, other, *of.target, program, progress, "uncertainty: " + group.name);
   std::vector<double> out;
   out.reserve(after.size());
   for (std::size_t i = 0; i < after.size(); ++i) out.push_back(prediction.surface[i].error_mm - after[i].error_mm);

@@ -27,18 +27,16 @@ struct EmittedPair {
 struct RecheckTarget {
   const simulate::SimulatedProgram& program;
   std::vector<std::uint32_t> moves{};  ///< empty: the same
-  std::vector<bool> first_cuts{};      ///< see observe()
 };
 
-/// `path`: of the program in `given`. What the guard gives up follows from the same rule as in the rounds: the
+/// `path`: of the program `of`. What the guard gives up follows from the same rule as in the rounds: the
 /// additional correctable error compared with the best program without it, on this grid.
-Recheck recheck(const machine::Job& job, double voxel_mm, const simulate::Setup& given, const EmittedPair& emitted,
-                const ShiftPath& path, const FitShiftOptions& options, const RecheckTarget& made_by,
-                const simulate::Progress& progress);
+Recheck recheck(double voxel_mm, const ShiftedProgram& of, const EmittedPair& emitted, const ShiftPath& path,
+                const FitShiftOptions& options, const RecheckTarget& made_by, const simulate::Progress& progress);
 
 /// Returns how much each point of the emitted surface (`after`) moves with a group of parameters.
-std::vector<double> changes_mm(const machine::Job& job, const ParameterGroup& group, const simulate::Setup& given,
-                               const Emitted* emitted, const std::vector<removal::SurfacePoint>& after,
-                               std::vector<std::string>& unknown, const simulate::Progress& progress);
+std::vector<double> changes_mm(const ParameterGroup& group, const ShiftedProgram& of, const Emitted* emitted,
+                               const std::vector<removal::SurfacePoint>& after, std::vector<std::string>& unknown,
+                               const simulate::Progress& progress);
 
 }  // namespace camber::compensate

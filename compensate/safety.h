@@ -1,18 +1,25 @@
 #pragma once
 // Safety of the emitted program: depth into the part and travel of the axes.
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
 #include "compensate/attribution.h"
-#include "compensate/program_line.h"
 #include "machine/job.h"
+#include "removal/form_error.h"
 #include "simulate/predict.h"
 #include "simulate/travel.h"
 
 namespace camber::compensate {
+
+/// A line of the given program, 1-based, and the one that it became; 0: unknown.
+struct ProgramLine {
+  std::size_t given = 0, emitted = 0;
+  bool operator==(const ProgramLine&) const = default;
+};
 
 /// Gouge depth: depth of the surface below the undeflected sweep of the target.
 struct Depth {
@@ -39,5 +46,24 @@ Depth depth_without_bending(const machine::Job& job, const simulate::Target& tar
                             const simulate::SimulatedProgram& emitted, double tolerance_um);
 
 using simulate::check_travel;
+
+inline constexpr double kWorse_mm = 0.001;  ///< a place is worse if its error exceeds the given one by more than this
+
+/// Largest magnitude of the error that counts as no worse than `given_mm`: the given one and kWorse_mm, or the
+/// tolerance where that is larger.
+double not_worse_mm(double given_mm, double tolerance_mm);
+
+/// Points of the judged surface whose error exceeds not_worse_mm.
+struct WorsePlaces {
+  std::size_t points = 0;
+  double area_fraction = 0;  ///< of the judged surface
+  double max_um = 0;         ///< by which a point is worse than given at most
+  double p999_um = 0;        ///< excess over not_worse_mm that no more than a thousandth of the surface has
+};
+
+/// `before`, `after`: the same points. `observed`: says which of them are judged.
+WorsePlaces worse_places(const std::vector<removal::SurfacePoint>& before,
+                         const std::vector<removal::SurfacePoint>& after, const Observed& observed,
+                         const machine::CompensationSettings& asked);
 
 }  // namespace camber::compensate

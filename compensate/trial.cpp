@@ -42,47 +42,53 @@ std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& progra
   return edits;
 }
 
-TrialRunner::TrialRunner(const machine::Job& job, const simulate::Setup& given)
-    : job_(job), given_(given), decimals_(decimals_for(job.machine.control, given.program.text())) {}
+ShiftedProgram given_program(const machine::Job& job, const std::shared_ptr<const simulate::Setup>& setup) {
+  const auto own = setup->own_stamps();
+  return {.job = job,
+          .program = {setup, &setup->program},
+          .target = &setup->target,
+          .own_target = setup->own_target(),
+          .predictor = setup->predictor,
+          .stamps = {own.begin(), own.end()},
+          .decimals = decimals_for(job.machine.control, setup->program.text())};
+}
 
-std::shared_ptr<const Emitted> TrialRunner::emit(const ShiftPath& path, const std::vector<bool>& splits,
-                                                 const std::vector<bool>& compensated) const {
+std::shared_ptr<const Emitted> emit(const ShiftedProgram& from, const ShiftPath& path, const std::vector<bool>& splits,
+                                    const std::vector<bool>& compensated) {
   auto out = std::make_shared<Emitted>();
   out->splits = splits;
-  out->emission = nc::emit_edits(given_.program.text(), given_.program.moves_in_program(),
-                                 edits_of_text(given_.program, path.edits(splits, kViaTolerance_mm)), decimals_);
+  out->emission = text_of(from, path, splits);
   Diagnostics repeated;  // the emitted program's warnings are the given one's
-  machine::Job job = job_;
-  out->operations = moved_ranges(job_.operations, out->emission.block_of_line);
+  machine::Job job = from.job;
+  out->operations = moved_ranges(job.operations, out->emission.block_of_line);
   job.operations = out->operations;
-  out->program = simulate::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
-  out->map = MoveMap(given_.program.moves_in_part(), out->program.moves_in_part(), out->emission.block_of_line);
-  out->quality = path_quality(given_.program.moves_in_part(), compensated, out->program.moves_in_part(), out->map,
-                              job_.machine.control.block_time_s, job_.compensation.max_angle_growth_rad);
+  out->program = simulate::simulate_motion(SourceText(job.program, out->emission.text), job, {}, repeated);
+  out->map = nc::MoveMap(from.program->moves_in_part(), out->program.moves_in_part(), out->emission.block_of_line);
+  out->quality = path_quality(from.program->moves_in_part(), compensated, out->program.moves_in_part(), out->map,
+                              job.machine.control.block_time_s, job.compensation.max_angle_growth_rad);
   return out;
 }
 
-nc::Emission TrialRunner::text_of(const ShiftPath& path, const std::vector<bool>& splits) const {
-  nc::EmitOptions options = decimals_;
+nc::Emission text_of(const ShiftedProgram& from, const ShiftPath& path, const std::vector<bool>& splits,
+                     const std::string& header) {
+  nc::EmitOptions options = from.decimals;
   options.header_comment = header;
-  return nc::emit_edits(given_.program.text(), given_.program.moves_in_program(),
-                        edits_of_text(given_.program, path.edits(splits, kViaTolerance_mm)), options);
+  const simulate::SimulatedProgram& program = *from.program;
+  return nc::emit_edits(program.text(), program.moves_in_program(),
+                        edits_of_text(program, path.edits(splits, kViaTolerance_mm)), options);
 }
 
-simulate::Prediction TrialRunner::predict(const simulate::SimulatedProgram& program,
-                                          const std::function<void(double)>& progress) const {
+simulate::Prediction predict(const ShiftedProgram& from, const Emitted* emitted,
+                             const std::function<void(double)>& progress) {
   simulate::PredictOptions options;
   options.progress = progress;
-  return given_.predictor(job_, given_.target, program, options);
+  return from.predictor(from.job, *from.target, emitted ? emitted->program : *from.program, options);
 }
 
-Observed TrialRunner::observe(const ShiftPath& path, const Emitted* emitted,
-                              const std::vector<removal::SurfacePoint>& surface) const {
-  const std::span<const simulate::PathFraction> own = given_.own_stamps();
-  if (!emitted)
-    return compensate::observe(path, job_, given_.program, given_.program, {}, surface, own, bending, first_cuts);
-  return compensate::observe(path, job_, given_.program, emitted->program, emitted->map, surface, own, bending,
-                             first_cuts);
+Observed observe(const ShiftedProgram& from, const ShiftPath& path, const Emitted* emitted,
+                 const std::vector<removal::SurfacePoint>& surface) {
+  return observe(path, from.job, *from.program, emitted ? emitted->program : *from.program,
+                 emitted ? emitted->map : nc::MoveMap(), surface, from.stamps, from.bending, from.first_cuts);
 }
 
 }  // namespace camber::compensate

@@ -19,7 +19,7 @@ struct Emitted {
   std::vector<bool> splits;  ///< points of the path at which lines are split
   nc::Emission emission;
   simulate::SimulatedProgram program;
-  MoveMap map;
+  nc::MoveMap map;
   PathQuality quality;
   machine::Operations operations;  ///< the job's, with the emitted program's lines
 };
@@ -50,33 +50,36 @@ std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& progra
 using kinematics::decimals_for;
 using simulate::moved_ranges;
 
-/// Runs trials. Everything passed must outlive the object.
-class TrialRunner {
- public:
-  TrialRunner(const machine::Job& job, const simulate::Setup& given);
-
-  /// Largest distance of the emitted arcs from the shifted points of an arc.
-  static constexpr double kViaTolerance_mm = 0.0005;
-
-  /// `splits`: points of the path at which lines are split.
-  std::shared_ptr<const Emitted> emit(const ShiftPath& path, const std::vector<bool>& splits,
-                                      const std::vector<bool>& compensated) const;
-  /// Returns the text alone, with the header.
-  nc::Emission text_of(const ShiftPath& path, const std::vector<bool>& splits) const;
-  /// Does not throw for problems that were already reported for the given program.
-  simulate::Prediction predict(const simulate::SimulatedProgram& program,
-                               const std::function<void(double)>& progress) const;
-  Observed observe(const ShiftPath& path, const Emitted* emitted,
-                   const std::vector<removal::SurfacePoint>& surface) const;
-
+/// A program whose path is shifted, and what its trials need beside the path.
+struct ShiftedProgram {
+  machine::Job job;  ///< with operations as lines of this program
+  std::shared_ptr<const simulate::SimulatedProgram> program;
+  const simulate::Target* target = nullptr;  ///< the job's; outlives the object
+  bool own_target = true;                    ///< see simulate::Setup
+  simulate::Predictor predictor = simulate::predict;
+  std::vector<simulate::PathFraction> stamps{};  ///< Target::stamps on the moves of `program`; none: another's target
+  nc::EmitOptions decimals{};
   std::vector<Vec3> bending{};     ///< nominal_bending, where rows are hidden; else empty
-  std::vector<bool> first_cuts{};  ///< see observe(): of a program in which runs are cut twice
-  std::string header{};            ///< comment lines for the emitted program
-
- private:
-  const machine::Job& job_;
-  const simulate::Setup& given_;
-  nc::EmitOptions decimals_;
+  std::vector<bool> first_cuts{};  ///< one per move: of a run that is cut again; empty: none
 };
+
+/// The given program of a set-up, which is kept.
+ShiftedProgram given_program(const machine::Job& job, const std::shared_ptr<const simulate::Setup>& setup);
+
+/// Largest distance of the emitted arcs from the shifted points of an arc.
+inline constexpr double kViaTolerance_mm = 0.0005;
+
+/// Emits the path's shifts and feeds, and reads and times the text. `splits`: points of the path at which lines are
+/// split. Does not throw for problems that were already reported for the given program.
+std::shared_ptr<const Emitted> emit(const ShiftedProgram& from, const ShiftPath& path, const std::vector<bool>& splits,
+                                    const std::vector<bool>& compensated);
+/// The text alone. `header`: comment lines for it.
+nc::Emission text_of(const ShiftedProgram& from, const ShiftPath& path, const std::vector<bool>& splits,
+                     const std::string& header = {});
+/// Predicts the emitted program; without one, the program itself.
+simulate::Prediction predict(const ShiftedProgram& from, const Emitted* emitted,
+                             const std::function<void(double)>& progress);
+Observed observe(const ShiftedProgram& from, const ShiftPath& path, const Emitted* emitted,
+                 const std::vector<removal::SurfacePoint>& surface);
 
 }  // namespace camber::compensate

@@ -43,10 +43,10 @@ std::optional<machine::Operations> judged_lines(const std::vector<LineRole>& lin
 
 std::vector<LineRun> runs_of(const CompensationResult& c) {
   std::vector<LineRun> out;
-  if (c.block_of_line.empty()) return {{1, 1, c.blocks_before}};
-  for (std::size_t i = 0; i < c.block_of_line.size(); ++i) {
-    if (c.block_of_line[i] == nc::Emission::kNoBlock) continue;
-    const std::size_t given = c.block_of_line[i] + 1;
+  if (c.emitted.block_of_line.empty()) return {{1, 1, c.emitted.blocks_before}};
+  for (std::size_t i = 0; i < c.emitted.block_of_line.size(); ++i) {
+    if (c.emitted.block_of_line[i] == nc::Emission::kNoBlock) continue;
+    const std::size_t given = c.emitted.block_of_line[i] + 1;
     const bool goes_on =
         !out.empty() && out.back().emitted + out.back().count == i + 1 && out.back().given + out.back().count == given;
     if (goes_on)
@@ -80,11 +80,11 @@ machine::Job judging_job(const machine::Job& job, const CompensationResult& c, c
   out.program = output;
   if (out.part.program.empty()) out.part.program = job.program;
   if (job.operations.given()) {
-    if (!c.block_of_line.empty()) out.operations = moved_ranges(c.operations, c.block_of_line);
+    if (!c.emitted.block_of_line.empty()) out.operations = moved_ranges(c.scope.operations, c.emitted.block_of_line);
     if (!out.part.operations) out.part.operations = job.operations;
   }
-  if (c.own_target)
-    if (auto judged = judged_lines(c.lines)) out.part.judged = std::move(judged);
+  if (c.scope.own_target)
+    if (auto judged = judged_lines(c.scope.lines)) out.part.judged = std::move(judged);
   out.compensation.operations = {};
   const fs::path folder = fs::absolute(output).parent_path();
   for (std::string* path :
@@ -98,14 +98,14 @@ Record make_record(const machine::Job& job, const CompensationResult& c, const s
   const machine::Job judging = judging_job(job, c, output);
   Record out;
   out.program = fs::path(output).filename().string();
-  out.program_hash = hash_of(c.text);
+  out.program_hash = hash_of(c.emitted.text);
   out.given =
       fs::absolute(job.program).lexically_normal().lexically_proximate(fs::absolute(output).parent_path()).string();
   out.given_hash = hash_of(SourceText::read(job.program).text());
   out.job = fmt::format("# Judges {} as camber compensate did: camber predict THIS_FILE -o DIR\n", out.program) +
             machine::to_toml(judging);
-  out.depth_limit_um = c.depth_limit_um;
-  out.judged_um = c.after_um;
+  out.depth_limit_um = c.safety.depth_limit_um;
+  out.judged_um = c.figures.after_um;
   out.lines = runs_of(c);
   return out;
 }

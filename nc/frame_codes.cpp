@@ -1,356 +1,19 @@
-// Codes that say where programmed coordinates lie: G10, G15 G16, G29, G50 G51, G50.1 G51.1, G52, G68, G92. Frames that
-// follow the part: tilted_codes.cpp.
-#include <cmath>
-#include <string>
-#include <utility>
+#include "nc/frame_codes.h"
 
-#include <fmt/format.h>
+#include <cmath>
 
 #include <Eigen/LU>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
-#include "nc/block_interpreter.h"
 
 namespace camber::nc {
 namespace {
 
-constexpr char kAxisLetters[] = "XYZ";
-constexpr char kOffsetLetters[] = "IJK";
+constexpr char kScaleLetters[] = "IJK";
 
-bool is_whole(double value) { return value == std::floor(value) && value >= 0 && value < 1e6; }
-
-}  // namespace
-
-void BlockInterpreter::update_frame() {
-  const Frame frame = frames_.frame(state_.work_offset, out_.moves.empty());
-  if (frame == frame_) return;
-  frame_ = frame;
-  state_changed_ = true;
-  for (std::size_t i = 0; i < out_.frames.size(); ++i)
-    if (out_.frames[i] == frame) {
-      state_.frame = static_cast<std::uint32_t>(i);
-      return;
-    }
-  state_.frame = static_cast<std::uint32_t>(out_.frames.size());
-  out_.frames.push_back(frame);
-}
-
-void BlockInterpreter::read_frame_code(const Code& code) {
-  const int t = code.tenths;
-  if (radius_.active && radius_.radius_mm != 0) {
-    error(code.word->offset, "cutter-radius",
-          fmt::format("{} under G{}; G40 was expected before", code_text(code), radius_.g_tenths / 10));
-    request_.skip_motion = true;
-    return;
-  }
-  if (t == 150 || t == 160) {
-    frames_.polar = t == 160;
-    if (t == 160) {
-      const Vec3 p = programmed();
-      const PlaneAxes axes = axes_of(plane_);
-      polar_angle_deg_ = std::atan2(p[axes.second], p[axes.first]) * 180 / kPi;
-      if (!not_editable_told_)
-        report_.warning(code.word->offset, "not-editable",
-                        "moves in polar coordinates (G16) are read, but compensation leaves them unchanged");
-      not_editable_told_ = true;
-    }
-  } else if (t == 690) {
-    cancel_tilted_frame();
-  } else if (t == 2540 || t == 2550) {
-    set_dynamic_offset(code);
-  } else if (t == 500) {
-    frames_.scale = Vec3::Ones();
-  } else if (t == 921 || t == 922 || t == 923) {
-    restore_shift(t);
-  } else {
-    if (request_.frame_code.word)
-      error(code.word->offset, "modal-group",
-            fmt::format("{} and {} in one block exclude each other; one of them was expected",
-                        code_text(request_.frame_code), code_text(code)));
-    request_.frame_code = code;
-    return;
-  }
-  frames_used_ = true;
-  update_frame();
-}
-
-void BlockInterpreter::run_frame_code() {
-  frames_used_ = true;
-  const int t = request_.frame_code.tenths;
-  const bool moves_origin = t == 100 || t == 520 || t == 920;
-  if (state_.work_frame != WorkFrame::machine && moves_origin) {
-    error(request_.frame_code.word->offset, "tilted-frame",
-          fmt::format("{} while {} is active; {} was expected before", code_text(request_.frame_code),
-                      state_.work_frame == WorkFrame::tilted ? "a tilted frame" : "the dynamic work offset (G254)",
-                      state_.work_frame == WorkFrame::tilted ? "G69" : "G255"));
-    words_.use("XYZIJKLPQRABC");
-    return;
-  }
-  // These take the place of the tool.
-  if (t == 920 || ((t == 680 || t == 510) && !words_.has_any("XYZ")))
-    settle_axes_for(t == 920 ? "G92" : t == 680 ? "G68" : "G51", false);
-  switch (t) {
-    case 100:
-      set_data();
-      break;
-    case 501:
-    case 511:
-      set_mirror();
-      break;
-    case 510:
-      set_scaling();
-      break;
-    case 520:
-      set_local_shift();
-      break;
-    case 531:
-      align_tool();
-      break;
-    case 680:
-      set_rotation();
-      break;
-    case 682:
-      set_tilted_frame();
-      break;
-    default:
-      set_position();
-      break;
-  }
-  update_frame();
-}
-
-// --- G52, G92
-// -----------------------------------------------------------------------------------------------------------
-
-void BlockInterpreter::set_local_shift() {
-  if (!words_.has_any("XYZ"))
-    error(request_.frame_code.word->offset, "frame", "G52 has no axis; X, Y or Z was expected");
-  Vec3& shift = options_.dialect_or_default().g52_is_g92 ? frames_.g92_mm : frames_.g52_mm;
-  for (int axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis])) shift[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
-  frames_.g92_kept_mm = frames_.g92_mm;
-}
-
-/// G92: where the tool stands has the given coordinates from now on.
-void BlockInterpreter::set_position() {
-  if (!words_.has_any("XYZ")) {
-    error(request_.frame_code.word->offset, "frame", "G92 has no axis; X, Y or Z was expected");
-    return;
-  }
-  for (int axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis]) && place_[static_cast<std::size_t>(axis)] != AxisPlace::known)
-      place_at_program_point(axis, words_.value(kAxisLetters[axis]) * unit_mm());
-  Vec3 p = programmed();
-  for (int axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis])) p[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
-  if (!options_.dialect_or_default().g52_is_g92)
-    for (int axis = 0; axis < 3; ++axis)
-      if (words_.has(kAxisLetters[axis])) {
-        frames_.g92_mm[axis] += frames_.g52_mm[axis];
-        frames_.g52_mm[axis] = 0;
-      }
-  frames_.g92_mm += frames_.offset_rotation(state_.work_offset).transpose() * (position_mm_ - frame_.from_program(p));
-  frames_.g92_kept_mm = frames_.g92_mm;
-}
-
-/// The axis stood where nobody knew; now it is known. The moves that led there end there.
-void BlockInterpreter::place_at_program_point(int axis, double programmed_mm) {
-  Vec3 p = programmed();
-  p[axis] = programmed_mm;
-  const double by = frame_.from_program(p)[axis] - position_mm_[axis];
-  position_mm_[axis] += by;
-  place_[static_cast<std::size_t>(axis)] = AxisPlace::known;
-  for (std::size_t m = out_.moves.size(); m-- > 0 && out_.moves[m].reference;) {
-    out_.moves[m].end_mm[axis] += by;
-    if (m > 0 && !out_.moves[m - 1].reference) break;
-    out_.moves[m].start_mm[axis] += by;
-  }
-}
-
-void BlockInterpreter::restore_shift(int tenths) {
-  if (tenths == 923) {
-    frames_.g92_mm = frames_.g92_kept_mm;
-    return;
-  }
-  words_.use("P");
-  if (tenths == 921) frames_.g92_kept_mm = Vec3::Zero();
-  frames_.g92_mm = Vec3::Zero();
-}
-
-// --- G68, G51, G51.1, G16
-// ---------------------------------------------------------------------------------------------
-
-void BlockInterpreter::set_rotation() {
-  if (!words_.has('R')) {
-    error(request_.frame_code.word->offset, "frame", "G68 has no angle; R in degrees was expected");
-    words_.use("XYZ");
-    return;
-  }
-  Vec3 centre = frames_.in_work_mm(programmed());
-  for (int axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis])) centre[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
-  const double angle = words_.value('R') * kPi / 180;
-  const bool adds = frames_.rotated && state_.incremental && options_.dialect_or_default().rotation_r_adds_in_g91;
-  frames_.rotation_rad = adds ? frames_.rotation_rad + angle : angle;
-  frames_.rotation_centre_mm = centre;
-  frames_.rotation_plane = plane_;
-  frames_.rotated = true;
-}
-
-double BlockInterpreter::scale_value(char letter) {
-  const double value = words_.value(letter);
-  return written_with_point(words_.word(letter)) ? value : value * options_.dialect_or_default().scale_unit;
-}
-
-void BlockInterpreter::set_scaling() {
-  Vec3 centre = frames_.in_work_mm(programmed()), scale = Vec3::Ones();
-  for (int axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis])) centre[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
-  if (words_.has('P')) {
-    scale = Vec3::Constant(scale_value('P'));
-  } else if (words_.has_any("IJK")) {
-    for (int axis = 0; axis < 3; ++axis)
-      if (words_.has(kOffsetLetters[axis])) scale[axis] = scale_value(kOffsetLetters[axis]);
-  } else {
-    error(request_.frame_code.word->offset, "frame", "G51 has no scale; P, or I J K, was expected");
-    return;
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    const double s = std::abs(scale[axis]);
-    if (s >= 0.01 && s <= 100) continue;
-    error(request_.frame_code.word->offset, "scaling",
-          fmt::format("G51 scales {} by {}; 0.01 to 100 was expected (1 without a decimal point is {})",
-                      kAxisLetters[axis], scale[axis], options_.dialect_or_default().scale_unit));
-    return;
-  }
-  frames_.scale = scale;
-  frames_.scale_centre_mm = centre;
-}
-
-void BlockInterpreter::set_mirror() {
-  const bool on = request_.frame_code.tenths == 511;
-  const bool any = words_.has_any("XYZ");
-  if (on && !any) error(request_.frame_code.word->offset, "frame", "G51.1 has no axis; X, Y or Z was expected");
-  for (int axis = 0; axis < 3; ++axis) {
-    auto& mirror = frames_.mirror_at_mm[static_cast<std::size_t>(axis)];
-    const bool given = words_.has(kAxisLetters[axis]);
-    const double at = given ? words_.value(kAxisLetters[axis]) * unit_mm() : 0;
-    if (on && given) mirror = at;
-    if (!on && (given || !any)) mirror.reset();
-  }
-}
-
-/// G16: the first axis of the plane is a radius, the second an angle in degrees; about the programmed zero (G90) or
-/// from where the tool stands, the angle added to the last one (G91).
-Vec3 BlockInterpreter::polar_target(Vec3 end) {
-  const PlaneAxes axes = axes_of(plane_);
-  const char radius_letter = kAxisLetters[axes.first], angle_letter = kAxisLetters[axes.second];
-  const char height_letter = kAxisLetters[axes.normal];
-  if (words_.has(height_letter)) {
-    const double value = words_.value(height_letter) * unit_mm();
-    end[axes.normal] = state_.incremental ? end[axes.normal] + value : value;
-  }
-  if (!words_.has(radius_letter) && !words_.has(angle_letter)) return end;
-  double radius = state_.incremental ? 0 : std::hypot(end[axes.first], end[axes.second]);
-  if (words_.has(radius_letter)) radius = words_.value(radius_letter) * unit_mm();
-  if (words_.has(angle_letter))
-    polar_angle_deg_ = words_.value(angle_letter) + (state_.incremental ? polar_angle_deg_ : 0);
-  const double angle = polar_angle_deg_ * kPi / 180;
-  const double x = radius * std::cos(angle), y = radius * std::sin(angle);
-  end[axes.first] = x + (state_.incremental ? end[axes.first] : 0);
-  end[axes.second] = y + (state_.incremental ? end[axes.second] : 0);
-  return end;
-}
-
-// --- G10
-// ----------------------------------------------------------------------------------------------------------------
-
-void BlockInterpreter::set_data() {
-  const std::size_t at = request_.frame_code.word->offset;
-  const double written = words_.has('L') ? words_.value('L') : -1;
-  const int kind = !words_.has('L') ? -1 : is_whole(written) ? static_cast<int>(written) : -2;
-  switch (kind) {
-    case 2:
-      set_work_offset_data(false);
-      break;
-    case 20:
-      set_work_offset_data(true);
-      break;
-    case -1:
-    case 1:
-    case 10:
-    case 11:
-    case 12:
-    case 13:
-      set_tool_data(kind);
-      break;
-    default:
-      error(at, "not-read",
-            fmt::format("G10 L{} is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool offsets) was "
-                        "expected",
-                        written),
-            "G10");
-      words_.use("XYZIJKPQR");
-      break;
-  }
-}
-
-void BlockInterpreter::set_work_offset_data(bool touch_off) {
-  const std::size_t at = request_.frame_code.word->offset;
-  const char* const name = touch_off ? "G10 L20" : "G10 L2";
-  if (!words_.has('P') || !is_whole(words_.value('P'))) {
-    error(at, "work-offset", fmt::format("{} needs a P with the number of the offset", name));
-    words_.use("XYZR");
-    return;
-  }
-  const int p = static_cast<int>(words_.value('P'));
-  const bool extended = touch_off && options_.dialect_or_default().g10_l20_is_g54_1;
-  if (!extended && p > 9) {
-    error(at, "work-offset", fmt::format("{} P{} is not a work offset; P0 to P9 was expected", name, p));
-    words_.use("XYZR");
-    return;
-  }
-  const bool external = !extended && p == 0 && options_.dialect_or_default().g10_p0_is_external;
-  const int number = extended ? 540000 + p : p == 0 ? state_.work_offset : p <= 6 ? 53 + p : 590 + p - 6;
-  WorkOffset& offset = frames_.offsets.at(number);
-  Vec3& value = external ? frames_.offsets.external_mm : offset.value_mm;
-  const bool adds = state_.incremental && options_.dialect_or_default().g10_adds_in_g91;
-  if (touch_off && !extended) {
-    // The tool's place gets the given coordinates in the offset.
-    Frames wished = frames_;
-    Frame frame = wished.frame(number, out_.moves.empty());
-    Vec3 p_mm = frame.to_program(position_mm_);
-    for (int axis = 0; axis < 3; ++axis)
-      if (words_.has(kAxisLetters[axis])) p_mm[axis] = words_.value(kAxisLetters[axis]) * unit_mm();
-    value += position_mm_ - frame.from_program(p_mm);
-    return;
-  }
-  if (!external && !offset.known && !adds) warn_of_moved_offset(number, at, name);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!words_.has(kAxisLetters[axis])) continue;
-    const double given = words_.value(kAxisLetters[axis]) * unit_mm();
-    value[axis] = adds ? value[axis] + given : given;
-  }
-  for (const RotaryOption& axis : options_.rotary_axes) {
-    if (external || !words_.has(axis.letter)) continue;
-    double& angle = offset.rotary_rad[axis.letter - 'A'];
-    const double given = rad_from_deg(words_.value(axis.letter));
-    angle = adds ? angle + given : given;
-  }
-  if (words_.has('R')) offset.rotation_rad = words_.value('R') * kPi / 180;
-  if (!external && !adds) offset.known = true;
-}
-
-void BlockInterpreter::warn_of_moved_offset(int number, std::size_t at, const std::string& name) {
-  if (number != state_.work_offset || out_.moves.empty()) return;
-  report_.warning(at, "work-offsets",
-                  fmt::format("{} sets the work offset that the program has moved in; its previous position is not "
-                              "known and is assumed to be the same",
-                              name),
-                  "G10");
-}
-
-namespace {
+bool is_offset_number(double value) { return value == std::floor(value) && value >= 0 && value < 1e6; }
 
 std::optional<double> ToolOffset::*column_of(OffsetVariable::Kind kind) {
   switch (kind) {
@@ -367,7 +30,275 @@ std::optional<double> ToolOffset::*column_of(OffsetVariable::Kind kind) {
 
 }  // namespace
 
-std::optional<double> BlockInterpreter::offset_value(const OffsetVariable& v) {
+FrameCodes::FrameCodes(BlockContext& at, ModalGroups& modal, ToolPlace& place)
+    : at_(at),
+      modal_(modal),
+      place_(place),
+      frames_(at.options.work_offsets_mm),
+      used_(!at.options.work_offsets_mm.empty()),
+      tool_offsets_(at.options.tool_offsets) {
+  for (const auto& [number, angles] : at.options.rotary_offsets_rad) frames_.offsets.at(number).rotary_rad = angles;
+  update_frame();
+}
+
+void FrameCodes::update_frame() {
+  const Frame frame = frames_.frame(modal_.state().work_offset, at_.out.moves.empty());
+  if (frame == frame_) return;
+  frame_ = frame;
+  for (std::size_t i = 0; i < at_.out.frames.size(); ++i)
+    if (at_.out.frames[i] == frame) {
+      modal_.change().frame = static_cast<std::uint32_t>(i);
+      return;
+    }
+  modal_.change().frame = static_cast<std::uint32_t>(at_.out.frames.size());
+  at_.out.frames.push_back(frame);
+}
+
+/// G15, G16, G50, G92.1 to G92.3: codes without words of their own.
+void FrameCodes::read_frame_code(const Code& code) {
+  const int t = code.tenths;
+  if (t == 150 || t == 160) {
+    frames_.polar = t == 160;
+    if (t == 160) {
+      const Vec3 p = programmed();
+      const PlaneAxes axes = axes_of(modal_.plane());
+      polar_angle_deg_ = std::atan2(p[axes.second], p[axes.first]) * 180 / kPi;
+      if (!at_.not_editable_told)
+        at_.report.warning(code.word->offset, "not-editable",
+                           "moves in polar coordinates (G16) are read, but compensation leaves them unchanged");
+      at_.not_editable_told = true;
+    }
+  } else if (t == 500) {
+    frames_.scale = Vec3::Ones();
+  } else {
+    restore_shift(t);
+  }
+}
+
+void FrameCodes::set_local_shift() {
+  if (!at_.words.has_any("XYZ"))
+    at_.error(at_.request.frame_code.word->offset, "frame", "G52 has no axis; X, Y or Z was expected");
+  Vec3& shift = at_.dialect().g52_is_g92 ? frames_.g92_mm : frames_.g52_mm;
+  for (int axis = 0; axis < 3; ++axis)
+    if (at_.words.has(kAxisLetters[axis])) shift[axis] = at_.words.value(kAxisLetters[axis]) * modal_.unit_mm();
+  frames_.g92_kept_mm = frames_.g92_mm;
+}
+
+/// G92: where the tool stands has the given coordinates from now on.
+void FrameCodes::set_position() {
+  if (!at_.words.has_any("XYZ")) {
+    at_.error(at_.request.frame_code.word->offset, "frame", "G92 has no axis; X, Y or Z was expected");
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (at_.words.has(kAxisLetters[axis]) && place_.axis[static_cast<std::size_t>(axis)] != AxisPlace::known)
+      place_at_program_point(axis, at_.words.value(kAxisLetters[axis]) * modal_.unit_mm());
+  Vec3 p = programmed();
+  for (int axis = 0; axis < 3; ++axis)
+    if (at_.words.has(kAxisLetters[axis])) p[axis] = at_.words.value(kAxisLetters[axis]) * modal_.unit_mm();
+  if (!at_.dialect().g52_is_g92)
+    for (int axis = 0; axis < 3; ++axis)
+      if (at_.words.has(kAxisLetters[axis])) {
+        frames_.g92_mm[axis] += frames_.g52_mm[axis];
+        frames_.g52_mm[axis] = 0;
+      }
+  frames_.g92_mm +=
+      frames_.offset_rotation(modal_.state().work_offset).transpose() * (place_.position_mm - frame_.from_program(p));
+  frames_.g92_kept_mm = frames_.g92_mm;
+}
+
+/// The axis stood where nobody knew; now it is known. The moves that led there end there.
+void FrameCodes::place_at_program_point(int axis, double programmed_mm) {
+  Vec3 p = programmed();
+  p[axis] = programmed_mm;
+  const double by = frame_.from_program(p)[axis] - place_.position_mm[axis];
+  place_.position_mm[axis] += by;
+  place_.axis[static_cast<std::size_t>(axis)] = AxisPlace::known;
+  for (std::size_t m = at_.out.moves.size(); m-- > 0 && at_.out.moves[m].reference;) {
+    at_.out.moves[m].end_mm[axis] += by;
+    if (m > 0 && !at_.out.moves[m - 1].reference) break;
+    at_.out.moves[m].start_mm[axis] += by;
+  }
+}
+
+void FrameCodes::restore_shift(int tenths) {
+  if (tenths == 923) {
+    frames_.g92_mm = frames_.g92_kept_mm;
+    return;
+  }
+  at_.words.use("P");
+  if (tenths == 921) frames_.g92_kept_mm = Vec3::Zero();
+  frames_.g92_mm = Vec3::Zero();
+}
+
+void FrameCodes::set_rotation() {
+  if (!at_.words.has('R')) {
+    at_.error(at_.request.frame_code.word->offset, "frame", "G68 has no angle; R in degrees was expected");
+    at_.words.use("XYZ");
+    return;
+  }
+  Vec3 centre = frames_.in_work_mm(programmed());
+  for (int axis = 0; axis < 3; ++axis)
+    if (at_.words.has(kAxisLetters[axis])) centre[axis] = at_.words.value(kAxisLetters[axis]) * modal_.unit_mm();
+  const double angle = at_.words.value('R') * kPi / 180;
+  const bool adds = frames_.rotated && modal_.state().incremental && at_.dialect().rotation_r_adds_in_g91;
+  frames_.rotation_rad = adds ? frames_.rotation_rad + angle : angle;
+  frames_.rotation_centre_mm = centre;
+  frames_.rotation_plane = modal_.plane();
+  frames_.rotated = true;
+}
+
+double FrameCodes::scale_value(char letter) {
+  const double value = at_.words.value(letter);
+  return at_.written_with_point(at_.words.word(letter)) ? value : value * at_.dialect().scale_unit;
+}
+
+void FrameCodes::set_scaling() {
+  Vec3 centre = frames_.in_work_mm(programmed()), scale = Vec3::Ones();
+  for (int axis = 0; axis < 3; ++axis)
+    if (at_.words.has(kAxisLetters[axis])) centre[axis] = at_.words.value(kAxisLetters[axis]) * modal_.unit_mm();
+  if (at_.words.has('P')) {
+    scale = Vec3::Constant(scale_value('P'));
+  } else if (at_.words.has_any("IJK")) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (at_.words.has(kScaleLetters[axis])) scale[axis] = scale_value(kScaleLetters[axis]);
+  } else {
+    at_.error(at_.request.frame_code.word->offset, "frame", "G51 has no scale; P, or I J K, was expected");
+    return;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const double s = std::abs(scale[axis]);
+    if (s >= 0.01 && s <= 100) continue;
+    at_.error(at_.request.frame_code.word->offset, "scaling",
+              fmt::format("G51 scales {} by {}; 0.01 to 100 was expected (1 without a decimal point is {})",
+                          kAxisLetters[axis], scale[axis], at_.dialect().scale_unit));
+    return;
+  }
+  frames_.scale = scale;
+  frames_.scale_centre_mm = centre;
+}
+
+void FrameCodes::set_mirror() {
+  const bool on = at_.request.frame_code.tenths == 511;
+  const bool any = at_.words.has_any("XYZ");
+  if (on && !any) at_.error(at_.request.frame_code.word->offset, "frame", "G51.1 has no axis; X, Y or Z was expected");
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& mirror = frames_.mirror_at_mm[static_cast<std::size_t>(axis)];
+    const bool given = at_.words.has(kAxisLetters[axis]);
+    const double at = given ? at_.words.value(kAxisLetters[axis]) * modal_.unit_mm() : 0;
+    if (on && given) mirror = at;
+    if (!on && (given || !any)) mirror.reset();
+  }
+}
+
+/// G16: the first axis of the plane is a radius, the second an angle in degrees; about the programmed zero (G90) or
+/// from where the tool stands, the angle added to the last one (G91).
+Vec3 FrameCodes::polar_target(Vec3 end) {
+  const PlaneAxes axes = axes_of(modal_.plane());
+  const char radius_letter = kAxisLetters[axes.first], angle_letter = kAxisLetters[axes.second];
+  const char height_letter = kAxisLetters[axes.normal];
+  if (at_.words.has(height_letter)) {
+    const double value = at_.words.value(height_letter) * modal_.unit_mm();
+    end[axes.normal] = modal_.state().incremental ? end[axes.normal] + value : value;
+  }
+  if (!at_.words.has(radius_letter) && !at_.words.has(angle_letter)) return end;
+  double radius = modal_.state().incremental ? 0 : std::hypot(end[axes.first], end[axes.second]);
+  if (at_.words.has(radius_letter)) radius = at_.words.value(radius_letter) * modal_.unit_mm();
+  if (at_.words.has(angle_letter))
+    polar_angle_deg_ = at_.words.value(angle_letter) + (modal_.state().incremental ? polar_angle_deg_ : 0);
+  const double angle = polar_angle_deg_ * kPi / 180;
+  const double x = radius * std::cos(angle), y = radius * std::sin(angle);
+  end[axes.first] = x + (modal_.state().incremental ? end[axes.first] : 0);
+  end[axes.second] = y + (modal_.state().incremental ? end[axes.second] : 0);
+  return end;
+}
+
+void FrameCodes::set_data() {
+  const std::size_t at = at_.request.frame_code.word->offset;
+  const double written = at_.words.has('L') ? at_.words.value('L') : -1;
+  const int kind = !at_.words.has('L') ? -1 : is_offset_number(written) ? static_cast<int>(written) : -2;
+  switch (kind) {
+    case 2:
+      set_work_offset_data(false);
+      break;
+    case 20:
+      set_work_offset_data(true);
+      break;
+    case -1:
+    case 1:
+    case 10:
+    case 11:
+    case 12:
+    case 13:
+      set_tool_data(kind);
+      break;
+    default:
+      at_.error(at, "not-read",
+                fmt::format("G10 L{} is not read; L2, L20 (work offsets) or L1, L10 to L13 (tool offsets) was "
+                            "expected",
+                            written),
+                "G10");
+      at_.words.use("XYZIJKPQR");
+      break;
+  }
+}
+
+void FrameCodes::set_work_offset_data(bool touch_off) {
+  const std::size_t at = at_.request.frame_code.word->offset;
+  const char* const name = touch_off ? "G10 L20" : "G10 L2";
+  if (!at_.words.has('P') || !is_offset_number(at_.words.value('P'))) {
+    at_.error(at, "work-offset", fmt::format("{} needs a P with the number of the offset", name));
+    at_.words.use("XYZR");
+    return;
+  }
+  const int p = static_cast<int>(at_.words.value('P'));
+  const bool extended = touch_off && at_.dialect().g10_l20_is_g54_1;
+  if (!extended && p > 9) {
+    at_.error(at, "work-offset", fmt::format("{} P{} is not a work offset; P0 to P9 was expected", name, p));
+    at_.words.use("XYZR");
+    return;
+  }
+  const bool external = !extended && p == 0 && at_.dialect().g10_p0_is_external;
+  const int number = extended ? 540000 + p : p == 0 ? modal_.state().work_offset : p <= 6 ? 53 + p : 590 + p - 6;
+  WorkOffset& offset = frames_.offsets.at(number);
+  Vec3& value = external ? frames_.offsets.external_mm : offset.value_mm;
+  const bool adds = modal_.state().incremental && at_.dialect().g10_adds_in_g91;
+  if (touch_off && !extended) {
+    // The tool's place gets the given coordinates in the offset.
+    Frames wished = frames_;
+    Frame frame = wished.frame(number, at_.out.moves.empty());
+    Vec3 p_mm = frame.to_program(place_.position_mm);
+    for (int axis = 0; axis < 3; ++axis)
+      if (at_.words.has(kAxisLetters[axis])) p_mm[axis] = at_.words.value(kAxisLetters[axis]) * modal_.unit_mm();
+    value += place_.position_mm - frame.from_program(p_mm);
+    return;
+  }
+  if (!external && !offset.known && !adds) warn_of_moved_offset(number, at, name);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!at_.words.has(kAxisLetters[axis])) continue;
+    const double given = at_.words.value(kAxisLetters[axis]) * modal_.unit_mm();
+    value[axis] = adds ? value[axis] + given : given;
+  }
+  for (const RotaryOption& axis : at_.options.rotary_axes) {
+    if (external || !at_.words.has(axis.letter)) continue;
+    double& angle = offset.rotary_rad[axis.letter - 'A'];
+    const double given = rad_from_deg(at_.words.value(axis.letter));
+    angle = adds ? angle + given : given;
+  }
+  if (at_.words.has('R')) offset.rotation_rad = at_.words.value('R') * kPi / 180;
+  if (!external && !adds) offset.known = true;
+}
+
+void FrameCodes::warn_of_moved_offset(int number, std::size_t at, const std::string& name) {
+  if (number != modal_.state().work_offset || at_.out.moves.empty()) return;
+  at_.report.warning(at, "work-offsets",
+                     fmt::format("{} sets the work offset that the program has moved in; its previous position is not "
+                                 "known and is assumed to be the same",
+                                 name),
+                     "G10");
+}
+
+std::optional<double> FrameCodes::offset_value(const OffsetVariable& v) {
   if (v.kind == OffsetVariable::Kind::external)
     return v.axis < 3 ? std::optional(frames_.offsets.external_mm[v.axis]) : std::nullopt;
   if (v.kind != OffsetVariable::Kind::work) {
@@ -382,13 +313,13 @@ std::optional<double> BlockInterpreter::offset_value(const OffsetVariable& v) {
   return std::nullopt;
 }
 
-void BlockInterpreter::set_offset(const OffsetVariable& v, double value, std::size_t at) {
+void FrameCodes::set_offset(const OffsetVariable& v, double value, std::size_t at) {
   if (v.kind == OffsetVariable::Kind::external) {
     if (v.axis < 3) frames_.offsets.external_mm[v.axis] = value;
   } else if (v.kind != OffsetVariable::Kind::work) {
     tool_offsets_[v.number].*column_of(v.kind) = value;
     return;
-  } else if (!options_.dialect_or_default().system_4000 && v.number == state_.work_offset) {
+  } else if (!at_.dialect().system_4000 && v.number == modal_.state().work_offset) {
     pending_offsets_.emplace_back(v, value);
     return;
   } else {
@@ -403,40 +334,40 @@ void BlockInterpreter::set_offset(const OffsetVariable& v, double value, std::si
       offset.known = offset.known || !offset.read;
     }
   }
-  frames_used_ = true;
+  used_ = true;
   update_frame();
 }
 
 /// A LinuxCNC control takes what a program has set of the active offset when it is next selected.
-void BlockInterpreter::take_pending_offset() {
+void FrameCodes::take_pending_offset() {
   const auto pending = std::exchange(pending_offsets_, {});
   for (const auto& [variable, value] : pending)
-    if (variable.number == state_.work_offset) {
+    if (variable.number == modal_.state().work_offset) {
       WorkOffset& offset = frames_.offsets.at(variable.number);
       if (variable.axis == OffsetVariable::kRotation) offset.rotation_rad = rad_from_deg(value);
       if (variable.axis < 3) offset.value_mm[variable.axis] = value, offset.known = true;
-      frames_used_ = true;
+      used_ = true;
     } else {
       pending_offsets_.emplace_back(variable, value);
     }
 }
 
-void BlockInterpreter::set_tool_data(int kind) {
-  const std::size_t at = request_.frame_code.word->offset;
-  if (!words_.has('P') || !is_whole(words_.value('P')) || !words_.has_any("RXYZ")) {
-    error(at, "tool-offset", "G10 of a tool offset needs P with its number and R (or Z) with its value");
-    words_.use("XYZRIJQ");
+void FrameCodes::set_tool_data(int kind) {
+  const std::size_t at = at_.request.frame_code.word->offset;
+  if (!at_.words.has('P') || !is_offset_number(at_.words.value('P')) || !at_.words.has_any("RXYZ")) {
+    at_.error(at, "tool-offset", "G10 of a tool offset needs P with its number and R (or Z) with its value");
+    at_.words.use("XYZRIJQ");
     return;
   }
-  ToolOffset& tool = tool_offsets_[static_cast<int>(words_.value('P'))];
-  words_.use("XYIJQ");
-  const bool axes = words_.has_any("XYZ");
+  ToolOffset& tool = tool_offsets_[static_cast<int>(at_.words.value('P'))];
+  at_.words.use("XYIJQ");
+  const bool axes = at_.words.has_any("XYZ");
   const auto put = [&](std::optional<double>& place, char letter) {
-    const double value = words_.value(letter) * unit_mm();
-    place = state_.incremental ? place.value_or(0) + value : value;
+    const double value = at_.words.value(letter) * modal_.unit_mm();
+    place = modal_.state().incremental ? place.value_or(0) + value : value;
   };
-  if (words_.has('Z')) put(tool.length_mm, 'Z');
-  if (!words_.has('R')) return;
+  if (at_.words.has('Z')) put(tool.length_mm, 'Z');
+  if (!at_.words.has('R')) return;
   // With axis words R is the radius of LinuxCNC's tool table; without, L says which column of the memory is meant.
   if (axes || kind == 12)
     put(tool.radius_mm, 'R');
@@ -447,46 +378,62 @@ void BlockInterpreter::set_tool_data(int kind) {
   else if (kind == 11)
     put(tool.length_wear_mm, 'R');
   else  // G10 P R, G10 L1 P R: one memory for both, who reads it says which it is
-    tool.length_mm = tool.radius_mm = words_.value('R') * unit_mm();
+    tool.length_mm = tool.radius_mm = at_.words.value('R') * modal_.unit_mm();
 }
-
-// --- machine coordinates
-// ------------------------------------------------------------------------------------------------
 
 /// An axis goes to a machine coordinate: known in the frame of the moves where the work offset is known. The height
 /// stays unknown, as it needs the tool's length.
-void BlockInterpreter::settle_machine_axis(std::size_t axis, double machine_mm, Vec3& place_mm) {
+void FrameCodes::settle_machine_axis(std::size_t axis, double machine_mm, Vec3& place_mm) {
   const auto index = static_cast<Eigen::Index>(axis);
   place_mm[index] = machine_mm;
-  place_[axis] = AxisPlace::reference;
+  place_.axis[axis] = AxisPlace::reference;
   if (axis == 2) return;
-  if (const auto origin = frames_.offsets.machine_origin_mm(state_.work_offset)) {
+  if (const auto origin = frames_.offsets.machine_origin_mm(modal_.state().work_offset)) {
     place_mm[index] = machine_mm + (*origin)[index];
-    place_[axis] = AxisPlace::known;
+    place_.axis[axis] = AxisPlace::known;
   }
 }
 
-/// G29: through the intermediate point of the last G28 or G30 to the point of the block.
-void BlockInterpreter::return_from_reference() {
-  check_unit();
-  if (!reference_via_mm_) {
-    error(words_.offset(), "reference", "G29 without a G28 or G30 before; its intermediate point was expected");
-    words_.use("XYZ");
-    return;
+void FrameCodes::work_offset_selected() {
+  if (!pending_offsets_.empty()) take_pending_offset();
+  if (used_) update_frame();
+}
+
+void FrameCodes::run_frame_code() {
+  switch (at_.request.frame_code.tenths) {
+    case 100:
+      return set_data();
+    case 501:
+    case 511:
+      return set_mirror();
+    case 510:
+      return set_scaling();
+    case 520:
+      return set_local_shift();
+    case 680:
+      return set_rotation();
+    default:
+      return set_position();
   }
-  settle_axes_for("G29", false);
-  Vec3 via = position_mm_;
-  for (int axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis])) via[axis] = (*reference_via_mm_)[axis];
-  const Vec3 start = position_mm_;
-  if (state_.incremental) position_mm_ = via;  // increments count from the intermediate point
-  const Vec3 end = target();
-  position_mm_ = start;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (words_.has(kAxisLetters[axis]) && place_[axis] == AxisPlace::reference) place_[axis] = AxisPlace::known;
-  add_move(MoveKind::rapid, via).reference = true;
-  add_move(MoveKind::rapid, end);
-  settle_axes();
+}
+
+const ToolOffset* FrameCodes::tool_offset(int number) const {
+  const auto found = tool_offsets_.find(number);
+  return found == tool_offsets_.end() ? nullptr : &found->second;
+}
+
+void FrameCodes::set_tilt(const std::optional<Tilt>& tilt) { frames_.tilt = tilt; }
+
+bool FrameCodes::cancel_rotation() {
+  frames_.rotated = false;
+  frames_.rotation_rad = 0;
+  if (!frames_.tilt) return false;
+  frames_.tilt.reset();
+  return true;
+}
+
+Vec3 FrameCodes::tilted_normal() const {
+  return (frames_.offset_rotation(modal_.state().work_offset) * frames_.tilt->rotation).col(2).normalized();
 }
 
 }  // namespace camber::nc

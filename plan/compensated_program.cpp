@@ -24,10 +24,12 @@ CompensatedProgram compensated(const machine::Job& job, const std::string& stock
   try {
     Diagnostics ignored;  // of a program that is not the one that is written
     const compensate::CompensationResult done = compensate::compensate(of, ignored, {});
-    const double before = done.before_um.p95, after = done.after_um.p95;
-    if (!done.better) return kept(text, fmt::format("its form error, {:.1f} um (p95), does not become less", before));
-    return {done.text, fmt::format("compensated: form error {:.1f} um (p95) without, {:.1f} um with it, both predicted",
-                                   before, after)};
+    const double before = done.figures.before_um.p95, after = done.figures.after_um.p95;
+    if (!done.verdict.better)
+      return kept(text, fmt::format("its form error, {:.1f} um (p95), does not become less", before));
+    return {done.emitted.text,
+            fmt::format("compensated: form error {:.1f} um (p95) without, {:.1f} um with it, both predicted", before,
+                        after)};
   } catch (const BeyondModel& beyond) {
     return kept(text, beyond.what());
   } catch (const InputError& error) {

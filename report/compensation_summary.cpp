@@ -41,7 +41,7 @@ Json plain(const compensate::PlainFigures& p) {
 
 Json causes(const compensate::CompensationResult& c) {
   Json out = Json::array();
-  for (const auto& cause : c.causes) {
+  for (const auto& cause : c.verdict.causes) {
     std::vector<std::size_t> given, emitted;
     for (const auto& line : cause.lines) given.push_back(line.given), emitted.push_back(line.emitted);
     out.push_back({{"rms_um", cause.rms_um},
@@ -55,7 +55,7 @@ Json causes(const compensate::CompensationResult& c) {
 
 Json limits(const compensate::CompensationResult& c) {
   Json out = Json::array();
-  for (const auto& limit : c.limits)
+  for (const auto& limit : c.verdict.limits)
     out.push_back({{"key", limit.key}, {"value", limit.value}, {"binds_no_more_at", limit.binds_no_more_at}});
   return out;
 }
@@ -77,11 +77,11 @@ Json depth(const compensate::Depth& d) {
 /// What was used and what it cost.
 Json levers_used(const compensate::CompensationResult& c) {
   const compensate::Round& best = c.rounds[c.best];
-  return {{"shift_max_um", 1000 * c.max_shift_mm},
-          {"blocks_changed", c.blocks_changed},
+  return {{"shift_max_um", 1000 * c.path.max_shift_mm},
+          {"blocks_changed", c.emitted.blocks_changed},
           {"feed_changes", best.slowed},
           {"repeated_runs", best.repeated},
-          {"extra_time_s", c.feed_after.time_s - c.feed_before.time_s}};
+          {"extra_time_s", c.figures.feed_after.time_s - c.figures.feed_before.time_s}};
 }
 
 Json rounds(const compensate::CompensationResult& c) {
@@ -123,8 +123,8 @@ Json time_points(const compensate::CompensationResult& c) {
 
 Json passes_json(const compensate::CompensationResult& c) {
   Json runs = Json::array();
-  for (const auto& run : c.repeated) runs.push_back({run.first_line, run.last_line});
-  return {{"runs", runs}, {"allowance_um", 1000 * c.pass_allowance_mm}};
+  for (const auto& run : c.passes.runs) runs.push_back({run.first_line, run.last_line});
+  return {{"runs", runs}, {"allowance_um", 1000 * c.passes.allowance_mm}};
 }
 
 Json recheck(const compensate::Recheck& r) {
@@ -151,7 +151,7 @@ Json measured(const compensate::MeasuredFit& m) {
 
 Json operations(const compensate::CompensationResult& c) {
   Json out = Json::array();
-  for (const auto& o : c.finishing.operations)
+  for (const auto& o : c.scope.finishing.operations)
     out.push_back({{"tool", o.tool},
                    {"lines", {o.first_line, o.last_line}},
                    {"surface_share", o.surface_fraction},
@@ -166,62 +166,66 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
                             double compute_s) {
   Json j;
   j["schema_version"] = kSchemaVersion;
-  j["before_um"] = figures_json(c.before_um);
-  j["after_um"] = figures_json(c.after_um);
-  const bool machine = c.reference == machine::Reference::machine;
+  j["before_um"] = figures_json(c.figures.before_um);
+  j["after_um"] = figures_json(c.figures.after_um);
+  const bool machine = c.scope.reference == machine::Reference::machine;
   j["reference"] = machine ? "machine" : "commanded";
   j["judged"] = machine ? "deflection_um" : "error_um";
-  j["before"] = plain(c.plain_before);
-  j["after"] = plain(c.plain_after);
-  j["within_tolerance"] = c.within_tolerance;
-  j["better_than_given"] = c.better;
-  j["achievable_um"] = {{"given_p95", c.outlook.given_p95_um}, {"p95", c.outlook.achievable_p95_um}};
+  j["before"] = plain(c.figures.plain_before);
+  j["after"] = plain(c.figures.plain_after);
+  j["within_tolerance"] = c.verdict.within_tolerance;
+  j["better_than_given"] = c.verdict.better;
+  j["achievable_um"] = {{"given_p95", c.figures.outlook.given_p95_um}, {"p95", c.figures.outlook.achievable_p95_um}};
   j["levers_used"] = levers_used(c);
-  j["worse_than_given"] = {
-      {"points", c.worse.points}, {"area_share", c.worse.area_fraction}, {"max_um", c.worse.max_um}};
-  j["depth_limit_um"] = c.depth_limit_um;
-  j["depth_limit_given"] = c.own_depth_limit;
-  j["unseen_mm2"] = c.unseen_mm2;
-  j["border_mm2"] = c.border_mm2;
-  j["not_judged_mm2"] = c.not_judged_mm2;
-  j["stage_between"] = c.between;
+  j["worse_than_given"] = {{"points", c.figures.worse.points},
+                           {"area_share", c.figures.worse.area_fraction},
+                           {"max_um", c.figures.worse.max_um}};
+  j["depth_limit_um"] = c.safety.depth_limit_um;
+  j["depth_limit_given"] = c.safety.own_depth_limit;
+  j["unseen_mm2"] = c.figures.unseen_mm2;
+  j["border_mm2"] = c.figures.border_mm2;
+  j["not_judged_mm2"] = c.figures.not_judged_mm2;
+  j["stage_between"] = c.figures.between;
   j["causes"] = causes(c);
   j["binding_limits"] = limits(c);
   j["verdict"] = verdict(verdict_text(c, asked));
-  j["split_before_um"] = split(c.split_before);
-  j["split_after_um"] = split(c.split_after);
+  j["split_before_um"] = split(c.figures.split_before);
+  j["split_after_um"] = split(c.figures.split_after);
   j["rounds"] = rounds(c);
   j["time_points"] = time_points(c);
   j["passes"] = passes_json(c);
   j["best_round"] = c.best;
-  j["stop"] = compensate::to_string(c.stop);
-  j["into_part"] = {{"within_tolerance", c.within_part},
-                    {"before", depth(c.depth_before)},
-                    {"after", depth(c.depth_after)},
-                    {"not_compensated", depth(c.depth_others)},
-                    {"without_bending", depth(c.depth_without_bending)}};
+  j["stop"] = compensate::to_string(c.verdict.stop);
+  j["into_part"] = {{"within_tolerance", c.safety.within_part},
+                    {"before", depth(c.safety.before)},
+                    {"after", depth(c.safety.after)},
+                    {"not_compensated", depth(c.safety.others)},
+                    {"without_bending", depth(c.safety.without_bending)}};
   j["path"] = {
-      {"angle_growth_deg", deg_from_rad(c.quality.angle_growth_rad)},
-      {"angle_growth_line", c.quality.angle_line},
-      {"shortest_split_mm", c.quality.shortest_mm},
-      {"too_short_splits", c.quality.too_short},
-      {"row_turn_deg", deg_from_rad(c.row_turn_rad)},
-      {"row_step_p95_um", 1000 * c.row_steps.p95_mm},
-      {"row_step_max_um", 1000 * c.row_steps.max_mm},
+      {"angle_growth_deg", deg_from_rad(c.path.quality.angle_growth_rad)},
+      {"angle_growth_line", c.path.quality.angle_line},
+      {"shortest_split_mm", c.path.quality.shortest_mm},
+      {"too_short_splits", c.path.quality.too_short},
+      {"row_turn_deg", deg_from_rad(c.path.row_turn_rad)},
+      {"row_step_p95_um", 1000 * c.path.row_steps.p95_mm},
+      {"row_step_max_um", 1000 * c.path.row_steps.max_mm},
       {"surface_step_um",
-       {{"before", {{"p95", 1000 * c.surface_steps.before_p95_mm}, {"max", 1000 * c.surface_steps.before_max_mm}}},
-        {"after", {{"p95", 1000 * c.surface_steps.after_p95_mm}, {"max", 1000 * c.surface_steps.after_max_mm}}},
-        {"growth_deg", deg_from_rad(c.surface_steps.growth_rad)}}}};
+       {{"before",
+         {{"p95", 1000 * c.path.surface_steps.before_p95_mm}, {"max", 1000 * c.path.surface_steps.before_max_mm}}},
+        {"after",
+         {{"p95", 1000 * c.path.surface_steps.after_p95_mm}, {"max", 1000 * c.path.surface_steps.after_max_mm}}},
+        {"growth_deg", deg_from_rad(c.path.surface_steps.growth_rad)}}}};
   j["operations"] = operations(c);
-  if (!c.rechecks.empty()) {
-    j["check"] = recheck(c.rechecks.front());
-    for (const auto& r : c.rechecks) j["checks"].push_back(recheck(r));
+  if (!c.uncertainty.rechecks.empty()) {
+    j["check"] = recheck(c.uncertainty.rechecks.front());
+    for (const auto& r : c.uncertainty.rechecks) j["checks"].push_back(recheck(r));
   }
-  if (c.band) j["uncertainty"] = band(*c.band);
-  if (c.measured) j["measured"] = measured(*c.measured);
-  j["blocks"] = {{"before", c.blocks_before}, {"after", c.blocks_after}, {"changed", c.blocks_changed}};
-  j["max_shift_um"] = 1000 * c.max_shift_mm;
-  j["machine_time_s"] = {{"before", c.feed_before.time_s}, {"after", c.feed_after.time_s}};
+  if (c.uncertainty.band) j["uncertainty"] = band(*c.uncertainty.band);
+  if (c.uncertainty.measured) j["measured"] = measured(*c.uncertainty.measured);
+  j["blocks"] = {
+      {"before", c.emitted.blocks_before}, {"after", c.emitted.blocks_after}, {"changed", c.emitted.blocks_changed}};
+  j["max_shift_um"] = 1000 * c.path.max_shift_mm;
+  j["machine_time_s"] = {{"before", c.figures.feed_before.time_s}, {"after", c.figures.feed_after.time_s}};
   j["compute_s"] = compute_s;
   return j.dump(2) + "\n";
 }
@@ -288,27 +292,28 @@ std::string rounds_text(const compensate::CompensationResult& c) {
 
 /// Lines that are cut twice; empty where none are.
 std::string passes_text(const compensate::CompensationResult& c) {
-  if (c.repeated.empty()) return {};
+  if (c.passes.runs.empty()) return {};
   constexpr std::size_t kShown = 8;
-  std::string out = fmt::format("cut twice, the first cut leaving {:.0f} um: lines", 1000 * c.pass_allowance_mm);
-  for (std::size_t i = 0; i < std::min(kShown, c.repeated.size()); ++i)
-    fmt::format_to(std::back_inserter(out), "{} {} to {}", i > 0 ? "," : "", c.repeated[i].first_line,
-                   c.repeated[i].last_line);
-  if (c.repeated.size() > kShown)
-    fmt::format_to(std::back_inserter(out), " and {} more runs", c.repeated.size() - kShown);
+  std::string out = fmt::format("cut twice, the first cut leaving {:.0f} um: lines", 1000 * c.passes.allowance_mm);
+  for (std::size_t i = 0; i < std::min(kShown, c.passes.runs.size()); ++i)
+    fmt::format_to(std::back_inserter(out), "{} {} to {}", i > 0 ? "," : "", c.passes.runs[i].first_line,
+                   c.passes.runs[i].last_line);
+  if (c.passes.runs.size() > kShown)
+    fmt::format_to(std::back_inserter(out), " and {} more runs", c.passes.runs.size() - kShown);
   return out + " of the given program\n";
 }
 
 /// "levers used: shift to 43.2 um (120 blocks), 14 feed changes; +2.1 s (+1.9 %)".
 std::string levers_text(const compensate::CompensationResult& c) {
   const compensate::Round& best = c.rounds[c.best];
-  std::string out = fmt::format("levers used: shift to {:.1f} um ({} blocks)", 1000 * c.max_shift_mm, c.blocks_changed);
+  std::string out =
+      fmt::format("levers used: shift to {:.1f} um ({} blocks)", 1000 * c.path.max_shift_mm, c.emitted.blocks_changed);
   if (best.slowed > 0) out += fmt::format(", {} feed changes", best.slowed);
   if (best.repeated > 0) out += fmt::format(", {} runs cut twice", best.repeated);
-  const double extra_s = c.feed_after.time_s - c.feed_before.time_s;
-  const double percent = c.feed_before.time_s > 0 ? 100 * extra_s / c.feed_before.time_s : 0;
+  const double extra_s = c.figures.feed_after.time_s - c.figures.feed_before.time_s;
+  const double percent = c.figures.feed_before.time_s > 0 ? 100 * extra_s / c.figures.feed_before.time_s : 0;
   out += fmt::format("; {:+.1f} s ({:+.1f} %)\n", extra_s, percent);
-  return c.feed_unusable ? out + "lower feeds were not tried: no feed of these moves can be changed\n" : out;
+  return c.scope.feed_unusable ? out + "lower feeds were not tried: no feed of these moves can be changed\n" : out;
 }
 
 /// Empty where no place is worse.
@@ -324,7 +329,8 @@ std::string time_points_text(const compensate::CompensationResult& c) {
   std::string out = "extra time allowed    machine time, s        p95, um   rms, um   changes of feed   cut twice\n";
   for (const auto& p : c.time_points) {
     const compensate::Round& r = c.rounds[p.round];
-    const double extra = c.feed_before.time_s > 0 ? 100 * (r.machine_time_s / c.feed_before.time_s - 1) : 0;
+    const double extra =
+        c.figures.feed_before.time_s > 0 ? 100 * (r.machine_time_s / c.figures.feed_before.time_s - 1) : 0;
     fmt::format_to(std::back_inserter(out), "{:>16.4g} %  {:>10.1f} ({:+6.1f} %) {:>9.2f} {:>9.2f} {:>17} {:>11}{}\n",
                    p.allowed_percent, r.machine_time_s, extra, r.error_um.p95, r.error_um.rms, r.slowed, r.repeated,
                    p.round == c.best ? "  <" : "");
@@ -335,22 +341,24 @@ std::string time_points_text(const compensate::CompensationResult& c) {
 std::string safety_text(const compensate::CompensationResult& c) {
   std::string out =
       fmt::format("gouge depth: {:.2f} um before, {:.2f} um after (single points {:.2f} um);\n  limit {:.4g} um{}",
-                  c.depth_before.gouge_depth_p999_um, c.depth_after.gouge_depth_p999_um, c.depth_after.deepest_um,
-                  c.depth_limit_um, c.own_depth_limit ? "" : " (default)");
-  if (c.depth_others.deepest_um > 0) out += fmt::format("\n  by other moves: {:.2f} um", c.depth_others.deepest_um);
-  return out + fmt::format("\nwith a rigid tool: {:.2f} um\n", c.depth_without_bending.deepest_um);
+                  c.safety.before.gouge_depth_p999_um, c.safety.after.gouge_depth_p999_um, c.safety.after.deepest_um,
+                  c.safety.depth_limit_um, c.safety.own_depth_limit ? "" : " (default)");
+  if (c.safety.others.deepest_um > 0) out += fmt::format("\n  by other moves: {:.2f} um", c.safety.others.deepest_um);
+  return out + fmt::format("\nwith a rigid tool: {:.2f} um\n", c.safety.without_bending.deepest_um);
 }
 
 std::string path_text(const compensate::CompensationResult& c) {
-  std::string out =
-      fmt::format("angles between blocks grow by {:.2f} degrees at most", deg_from_rad(c.quality.angle_growth_rad));
-  if (c.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.row_steps.p95_mm);
-  if (c.row_turn_rad > 0)
-    out += fmt::format("\nfrom row to row the shifts turn by {:.2f} degrees at most", deg_from_rad(c.row_turn_rad));
-  if (c.surface_steps.pairs > 0)
+  std::string out = fmt::format("angles between blocks grow by {:.2f} degrees at most",
+                                deg_from_rad(c.path.quality.angle_growth_rad));
+  if (c.path.row_steps.pairs > 0) out += fmt::format("; row to row {:.1f} um (95 %)", 1000 * c.path.row_steps.p95_mm);
+  if (c.path.row_turn_rad > 0)
+    out +=
+        fmt::format("\nfrom row to row the shifts turn by {:.2f} degrees at most", deg_from_rad(c.path.row_turn_rad));
+  if (c.path.surface_steps.pairs > 0)
     out += fmt::format("\nthe surface steps from row to row by {:.2f} um, before by {:.2f} um (95 %)",
-                       1000 * c.surface_steps.after_p95_mm, 1000 * c.surface_steps.before_p95_mm);
-  if (c.quality.shortest_mm > 0) out += fmt::format("\nshortest block of a split: {:.3f} mm", c.quality.shortest_mm);
+                       1000 * c.path.surface_steps.after_p95_mm, 1000 * c.path.surface_steps.before_p95_mm);
+  if (c.path.quality.shortest_mm > 0)
+    out += fmt::format("\nshortest block of a split: {:.3f} mm", c.path.quality.shortest_mm);
   return out + "\n";
 }
 
@@ -359,20 +367,22 @@ std::string checks_text(const compensate::CompensationResult& c) {
   const auto add = [&](fmt::string_view format, auto... a) {
     fmt::vformat_to(std::back_inserter(out), format, fmt::make_format_args(a...));
   };
-  if (c.measured)
-    add("measured: the deflection is {:.3f} +- {:.3f} times the predicted one ({} points)\n", c.measured->scale,
-        c.measured->std_error, c.measured->points);
-  for (const auto& r : c.rechecks)
+  if (c.uncertainty.measured)
+    add("measured: the deflection is {:.3f} +- {:.3f} times the predicted one ({} points)\n",
+        c.uncertainty.measured->scale, c.uncertainty.measured->std_error, c.uncertainty.measured->points);
+  for (const auto& r : c.uncertainty.rechecks)
     add("on voxels of {:g} mm: rms {:.2f} um before, {:.2f} after;\n"
         "  correctable by a shift: {:.2f} before, {:.2f} after\n",
         r.voxel_mm, r.before_um.rms, r.after_um.rms, r.split_before.correctable_um, r.split_after.correctable_um);
-  if (!c.band) return out;
-  add("with the model uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.band->rms_um, c.band->p95_um);
-  for (const auto& g : c.band->groups) add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);
+  if (!c.uncertainty.band) return out;
+  add("with the model uncertainty: rms {:.2f} um, 95 % within {:.2f} um\n", c.uncertainty.band->rms_um,
+      c.uncertainty.band->p95_um);
+  for (const auto& g : c.uncertainty.band->groups)
+    add("  {:<12}{:>8.2f} um rms for one standard error\n", g.name, g.rms_um);
   add("safe share of the compensation: {:.0f} %\n"
       "  with this fraction of each shift at most 5 % of the area is cut below the depth\n"
       "  limit, at 95 % confidence in each point\n",
-      100 * c.band->safe_fraction);
+      100 * c.uncertainty.band->safe_fraction);
   return out;
 }
 
@@ -401,10 +411,10 @@ const char* reason(compensate::Stop stop) {
 
 std::string compensate_text(const compensate::CompensationResult& c, double compute_s) {
   std::string out = levers_text(c) + rounds_text(c) + time_points_text(c) + passes_text(c);
-  fmt::format_to(std::back_inserter(out), "stopped: {}\n", reason(c.stop));
-  out += worse_text(c.worse) + plain_figures_text(c) + split_text(c.split_before, c.split_after) + safety_text(c) +
-         path_text(c) + checks_text(c);
-  const auto& operations = c.finishing.operations;
+  fmt::format_to(std::back_inserter(out), "stopped: {}\n", reason(c.verdict.stop));
+  out += worse_text(c.figures.worse) + plain_figures_text(c) +
+         split_text(c.figures.split_before, c.figures.split_after) + safety_text(c) + path_text(c) + checks_text(c);
+  const auto& operations = c.scope.finishing.operations;
   for (const auto& o : operations)
     if (operations.size() > 1 || o.compensated_moves < o.moves)
       fmt::format_to(std::back_inserter(out), "T{}, lines {} to {}: {}, {:.0f} % of the surface\n", o.tool,
@@ -412,11 +422,11 @@ std::string compensate_text(const compensate::CompensationResult& c, double comp
   fmt::format_to(std::back_inserter(out),
                  "largest shift {:.1f} um; {} of {} blocks changed, {} blocks after\n"
                  "machine time {:.1f} s before, {:.1f} s after; computed in {:.1f} s\n",
-                 1000 * c.max_shift_mm, c.blocks_changed, c.blocks_before, c.blocks_after, c.feed_before.time_s,
-                 c.feed_after.time_s, compute_s);
+                 1000 * c.path.max_shift_mm, c.emitted.blocks_changed, c.emitted.blocks_before, c.emitted.blocks_after,
+                 c.figures.feed_before.time_s, c.figures.feed_after.time_s, compute_s);
   const std::size_t limited = c.rounds[c.best].limited_points;
   if (limited > 0) fmt::format_to(std::back_inserter(out), "{} points of the path reached max_shift_mm\n", limited);
-  for (const auto& limit : c.limits) out += compensate::sentence(limit) + "\n";
+  for (const auto& limit : c.verdict.limits) out += compensate::sentence(limit) + "\n";
   return out;
 }
 

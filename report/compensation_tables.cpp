@@ -10,7 +10,7 @@ std::string um(double value) { return fmt::format("{:.2f}", value); }
 TextTable split_table(const compensate::CompensationResult& c) {
   TextTable table{"Error decomposition", {"part of the error", "before, µm rms", "after, µm rms"}, {}, {}};
   const auto add = [&](const char* name, double compensate::ErrorSplit::*part) {
-    const double before = c.split_before.*part, after = c.split_after.*part;
+    const double before = c.figures.split_before.*part, after = c.figures.split_after.*part;
     if (before > 0 || after > 0) table.rows.push_back({name, um(before), um(after)});
   };
   using Split = compensate::ErrorSplit;
@@ -35,10 +35,10 @@ TextTable depth_table(const compensate::CompensationResult& c) {
     table.rows.push_back(
         {name, um(d.gouge_depth_p999_um), um(d.deepest_um), d.deepest_um > 0 ? place(d.place_mm) : ""});
   };
-  add("before", c.depth_before);
-  add("after", c.depth_after);
-  add("after, of moves that are not compensated", c.depth_others);
-  add("after, with a rigid tool", c.depth_without_bending);
+  add("before", c.safety.before);
+  add("after", c.safety.after);
+  add("after, of moves that are not compensated", c.safety.others);
+  add("after, with a rigid tool", c.safety.without_bending);
   return table;
 }
 
@@ -58,7 +58,7 @@ TextTable band_table(const compensate::Band& band) {
 
 std::vector<TextTable> compensation_tables(const compensate::CompensationResult& c) {
   std::vector<TextTable> tables{split_table(c), depth_table(c)};
-  if (c.band) tables.push_back(band_table(*c.band));
+  if (c.uncertainty.band) tables.push_back(band_table(*c.uncertainty.band));
   return tables;
 }
 

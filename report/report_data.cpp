@@ -120,7 +120,7 @@ TextTable rounds_table(const compensate::CompensationResult& c) {
   TextTable table{"Rounds of the compensation",
                   {"round", "95 %, µm", "rms, µm", "mean, µm", "least, µm", "greatest, µm", "largest shift, µm"},
                   {},
-                  fmt::format("Stopped: {}. Round {} was written.", compensate::to_string(c.stop), c.best)};
+                  fmt::format("Stopped: {}. Round {} was written.", compensate::to_string(c.verdict.stop), c.best)};
   for (std::size_t i = 0; i < c.rounds.size(); ++i) {
     const auto& e = c.rounds[i].error_um;
     table.rows.push_back({i == 0 ? "as given" : std::to_string(i), number_text(e.p95, 2), number_text(e.rms, 2),
@@ -159,8 +159,8 @@ TextTable limits_table(const machine::Job& job, const compensate::CompensationRe
   table.rows = {{"tolerance", fmt::format("{:g} µm", job.compensation.tolerance_um)},
                 {"maximum shift", fmt::format("{:g} µm", 1000 * job.compensation.max_shift_mm)},
                 {"path points at this limit", std::to_string(c.rounds[c.best].limited_points)},
-                {"blocks", fmt::format("{} before, {} after", c.blocks_before, c.blocks_after)},
-                {"blocks changed", std::to_string(c.blocks_changed)}};
+                {"blocks", fmt::format("{} before, {} after", c.emitted.blocks_before, c.emitted.blocks_after)},
+                {"blocks changed", std::to_string(c.emitted.blocks_changed)}};
   return table;
 }
 
@@ -280,48 +280,49 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   ReportData data;
   data.title = "Compensation of " + file_name(job.program);
   data.subtitle = job.path;
-  add_figures(data, c.before_um, &c.after_um, "{}_um");
+  add_figures(data, c.figures.before_um, &c.figures.after_um, "{}_um");
   const auto part = [&](const char* name, const removal::ErrorFigures& before, const removal::ErrorFigures& after,
                         const char* key) {
     data.figures.push_back({name, before.rms, after.rms, "um", 2, key});
   };
-  const auto &given = c.plain_before, &emitted = c.plain_after;
+  const auto &given = c.figures.plain_before, &emitted = c.figures.plain_after;
   part("error, rms", given.error_um, emitted.error_um, "{}.error_um.rms");
   part("due to deflection, rms", given.deflection_um, emitted.deflection_um, "{}.deflection_um.rms");
   part("due to servo lag and corner rounding, rms", given.contour_um, emitted.contour_um, "{}.contour_um.rms");
   if (given.total_um && emitted.total_um)
     part("against the part's mesh, rms", *given.total_um, *emitted.total_um, "{}.total_error_um.rms");
   data.figures.insert(data.figures.begin() + 2,
-                      {"largest shift", 1000 * c.max_shift_mm, std::nullopt, "um", 1, "max_shift_um"});
-  data.figures.insert(data.figures.begin() + 3,
-                      {"machine time", c.feed_before.time_s, c.feed_after.time_s, "s", 1, "machine_time_s.{}"});
-  data.figures.push_back({"surface without a form error, about", c.unseen_mm2, std::nullopt, "mm2", 1, "unseen_mm2"});
+                      {"largest shift", 1000 * c.path.max_shift_mm, std::nullopt, "um", 1, "max_shift_um"});
+  data.figures.insert(data.figures.begin() + 3, {"machine time", c.figures.feed_before.time_s,
+                                                 c.figures.feed_after.time_s, "s", 1, "machine_time_s.{}"});
+  data.figures.push_back(
+      {"surface without a form error, about", c.figures.unseen_mm2, std::nullopt, "mm2", 1, "unseen_mm2"});
   data.voxel_mm = job.simulation.voxel_mm;
-  data.compared = c.surface_after.size() == c.surface_before.size();
-  data.surface = {c.surface_before.size(),
+  data.compared = c.surfaces.after.size() == c.surfaces.before.size();
+  data.surface = {c.surfaces.before.size(),
                   [&c, &given = before.program, &written = after.program, compared = data.compared](std::size_t i) {
-                    SurfaceSample sample = sample_of(c.surface_before[i], given);
+                    SurfaceSample sample = sample_of(c.surfaces.before[i], given);
                     if (!compared) return sample;
-                    sample.error_after_um = 1000 * c.surface_after[i].error_mm;
-                    sample.block_after = line_of(written, c.surface_after[i].machined_stamp);
+                    sample.error_after_um = 1000 * c.surfaces.after[i].error_mm;
+                    sample.block_after = line_of(written, c.surfaces.after[i].machined_stamp);
                     return sample;
                   }};
-  add_stock(data, c.stock);
+  add_stock(data, c.surfaces.stock);
   add_shifts(after.rows, after.program.moves_in_part(), shifted_from ? *shifted_from : before.program.moves_in_part());
   for (CompensatedRun* run : {&before, &after}) {
     run->rows = shown_rows(data, job, run->program, std::move(run->rows));
     add_loads(run->rows, run->program.path, run->loads);
-    add_errors(run->rows, run->program.path, run == &before ? c.surface_before : c.surface_after);
+    add_errors(run->rows, run->program.path, run == &before ? c.surfaces.before : c.surfaces.after);
     if (!data.machine && turns(run->rows)) data.machine = machine_view(job, run->rows);
     data.path.push_back({run == &before ? "before" : "after", run->program.text().source.text(), std::move(run->rows)});
   }
-  if (c.better || c.best > 0) data.download_name = file_name(output);  // else nothing is written
+  if (c.verdict.better || c.best > 0) data.download_name = file_name(output);  // else nothing is written
   data.tables = {rounds_table(c), limits_table(job, c)};
   add_times(data, job, c);
   add_worst_lines(data, data.compared ? after.program : before.program, data.compared);
   for (TextTable& table : compensation_tables(c)) data.tables.push_back(std::move(table));
-  add_features(data, features_of(job, c.surface_before), "Features before the compensation");
-  add_features(data, features_of(job, c.surface_after), "Features after the compensation");
+  add_features(data, features_of(job, c.surfaces.before), "Features before the compensation");
+  add_features(data, features_of(job, c.surfaces.after), "Features after the compensation");
   add_texts(data, job, diagnostics, {});
   const VerdictText verdict = verdict_text(c, job.compensation);
   data.verdict = PageVerdict{verdict.success, verdict.headline, verdict.reasons};

@@ -384,7 +384,7 @@ std::string sentence_unless(bool settled) {
 
 }  // namespace
 
-std::string unsettled_sentence(const compensate::CompensationResult& c) { return sentence_unless(c.settled); }
+std::string unsettled_sentence(const compensate::CompensationResult& c) { return sentence_unless(c.verdict.settled); }
 std::string unsettled_sentence(const compensate::Verification& v) { return sentence_unless(v.settled); }
 
 }  // namespace camber::report

@@ -28,7 +28,7 @@ std::string figure_sentence(double p95_um, double in_band_fraction, const Compen
 }
 
 std::string figure_sentence(const CompensationResult& c, const CompensationSettings& asked) {
-  return figure_sentence(c.after_um.p95, c.plain_after.in_band_fraction, asked);
+  return figure_sentence(c.figures.after_um.p95, c.figures.plain_after.in_band_fraction, asked);
 }
 
 std::string figure_sentence(const Verification& v, const CompensationSettings& asked) {
@@ -45,26 +45,26 @@ std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
 }
 
 std::vector<std::string> shortfalls(const CompensationResult& c, const CompensationSettings& asked) {
-  std::vector<std::string> out = c.doubts;
-  if (!c.settled) out.push_back(unsettled_sentence(c));
-  if (!c.better)
+  std::vector<std::string> out = c.verdict.doubts;
+  if (!c.verdict.settled) out.push_back(unsettled_sentence(c));
+  if (!c.verdict.better)
     out.push_back(
         "no round was both better than the given program and within the limits, so the given program is judged");
-  if (!c.within_part) out.push_back(too_deep_sentence(c.depth_after, c.depth_limit_um));
-  if (c.within_tolerance) return out;
+  if (!c.safety.within_part) out.push_back(too_deep_sentence(c.safety.after, c.safety.depth_limit_um));
+  if (c.verdict.within_tolerance) return out;
   out.push_back(figure_sentence(c, asked));
-  if (!asked.profile_um && c.outlook.achievable_p95_um > asked.tolerance_um)
+  if (!asked.profile_um && c.figures.outlook.achievable_p95_um > asked.tolerance_um)
     out.push_back(fmt::format("before the rounds, shifts alone were expected to leave {:.2f} um (95th percentile)",
-                              c.outlook.achievable_p95_um));
-  for (const auto& cause : c.causes) out.push_back(compensate::sentence(cause));
+                              c.figures.outlook.achievable_p95_um));
+  for (const auto& cause : c.verdict.causes) out.push_back(compensate::sentence(cause));
   return out;
 }
 
 std::string headline(const CompensationResult& c, const CompensationSettings& asked) {
-  if (!c.doubts.empty() || !c.settled) return "the figures are not reliable";
-  if (!c.better) return "no better program was found";
-  if (!c.within_part) return "gouge too deep";
-  return (c.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(c, asked);
+  if (!c.verdict.doubts.empty() || !c.verdict.settled) return "the figures are not reliable";
+  if (!c.verdict.better) return "no better program was found";
+  if (!c.safety.within_part) return "gouge too deep";
+  return (c.verdict.within_tolerance ? "within the tolerance: " : "over the tolerance: ") + figure_sentence(c, asked);
 }
 
 std::string headline(const Verification& v, const CompensationSettings& asked) {
@@ -139,18 +139,19 @@ std::string verify_text(const Verification& v, double compute_s) {
 std::string plain_figures_text(const CompensationResult& c) {
   std::string out = plain_head();
   const auto rows = [&](const std::string& name, auto part) {
-    out += plain_row(name + ", before", part(c.plain_before)) + plain_row(name + ", after", part(c.plain_after));
+    out += plain_row(name + ", before", part(c.figures.plain_before)) +
+           plain_row(name + ", after", part(c.figures.plain_after));
   };
   rows("error", [](const auto& p) { return p.error_um; });
   rows(" deflection", [](const auto& p) { return p.deflection_um; });
-  if (c.plain_before.part_um && c.plain_after.part_um) {
+  if (c.figures.plain_before.part_um && c.figures.plain_after.part_um) {
     rows("  tool", [](const auto& p) { return *p.tool_um; });
     rows("  workpiece", [](const auto& p) { return *p.part_um; });
   }
-  out += plain_row(" contour", c.plain_after.contour_um);
-  if (c.plain_after.total_um) rows("against part", [](const auto& p) { return *p.total_um; });
-  return out + seen_text(c.plain_after.error_um.area_mm2, c.unseen_mm2, {c.border_mm2, c.not_judged_mm2, c.between},
-                         c.reference);
+  out += plain_row(" contour", c.figures.plain_after.contour_um);
+  if (c.figures.plain_after.total_um) rows("against part", [](const auto& p) { return *p.total_um; });
+  return out + seen_text(c.figures.plain_after.error_um.area_mm2, c.figures.unseen_mm2,
+                         {c.figures.border_mm2, c.figures.not_judged_mm2, c.figures.between}, c.scope.reference);
 }
 
 }  // namespace camber::report

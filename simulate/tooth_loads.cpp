@@ -56,6 +56,23 @@ StampLoad summarize(const deflection::ToothPass& pass, const ToolPose& pose) {
   return load;
 }
 
+StampLoad between(const StampLoad& a, const StampLoad& b, double way) {
+  const auto mix = [&](const auto& of_a, const auto& of_b) { return (1 - way) * of_a + way * of_b; };
+  StampLoad load;
+  load.force_max_N = mix(a.force_max_N, b.force_max_N);
+  load.lateral_max_N = mix(a.lateral_max_N, b.lateral_max_N);
+  load.axial_max_N = mix(a.axial_max_N, b.axial_max_N);
+  load.force_mean_N = mix(a.force_mean_N, b.force_mean_N);
+  load.chip_mm3 = mix(a.chip_mm3, b.chip_mm3);
+  load.torque_max_Nmm = mix(a.torque_max_Nmm, b.torque_max_Nmm);
+  load.torque_mean_Nmm = mix(a.torque_mean_Nmm, b.torque_mean_Nmm);
+  load.work_Nmm = mix(a.work_Nmm, b.work_Nmm);
+  load.chip_max_mm = mix(a.chip_max_mm, b.chip_max_mm);
+  load.chip_area_mm2 = mix(a.chip_area_mm2, b.chip_area_mm2);
+  load.arc = mix(a.arc, b.arc);
+  return load;
+}
+
 double tip_deflection_mm(const removal::DeflectionTable& table, const float* row) {
   float largest = 0;
   for (int m = 0; m < table.steps; ++m) {

@@ -25,6 +25,9 @@ removal::EnvelopeGrid sampled_envelope(const removal::Stock& stock, const machin
 /// among them. `pass`: in the tool's frame.
 StampLoad summarize(const deflection::ToothPass& pass, const ToolPose& pose = {});
 
+/// The load of a tooth passing between two others, without the deflections.
+StampLoad between(const StampLoad& a, const StampLoad& b, double way);
+
 /// Of the tip, at any rotation step of a row of `table`. Of a bending beam the tip moves most.
 double tip_deflection_mm(const removal::DeflectionTable& table, const float* row);
 

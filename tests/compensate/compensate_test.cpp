@@ -79,14 +79,14 @@ TEST(Compensate, LowersTheFeedWhereNoShiftHelps) {
   EXPECT_LT(slower.error_um.p95, 0.9 * shifted.error_um.p95) << rounds;
   EXPECT_GT(slower.machine_time_s, 1.02 * shifted.machine_time_s);
   EXPECT_LE(slower.machine_time_s, 1.154 * shifted.machine_time_s);
-  EXPECT_NEAR(c.feed_after.time_s, c.rounds[c.best].machine_time_s, 1e-9) << "of the text that is emitted";
+  EXPECT_NEAR(c.figures.feed_after.time_s, c.rounds[c.best].machine_time_s, 1e-9) << "of the text that is emitted";
   EXPECT_GT(slower.slowed, 0u);
 
   // Nothing but coordinates and F words is new.
   static const std::regex feeds(R"( ?F[0-9.]+)");
   const auto bare = [](const std::string& text) { return std::regex_replace(without_coordinates(text), feeds, ""); };
   std::set<std::string> given, emitted;
-  std::istringstream before(bare(tests::file_text(job.program))), after(bare(c.text));
+  std::istringstream before(bare(tests::file_text(job.program))), after(bare(c.emitted.text));
   for (std::string line; std::getline(before, line);) given.insert(line);
   for (std::string line; std::getline(after, line);) emitted.insert(line);
   for (const std::string& line : emitted) EXPECT_TRUE(line.empty() || given.contains(line)) << line;
@@ -105,24 +105,24 @@ TEST(Compensate, CutsTwiceWhereNoShiftHelps) {
   EXPECT_LT(twice.error_um.p95, 0.6 * shifted.error_um.p95);
   EXPECT_EQ(twice.repeated, 2u);
   EXPECT_GT(twice.machine_time_s, 1.5 * shifted.machine_time_s);
-  EXPECT_EQ(c.feed_after.time_s, c.rounds[c.best].machine_time_s);
-  EXPECT_GE(c.pass_allowance_mm, 0.02);
-  ASSERT_EQ(c.repeated.size(), 2u);
-  EXPECT_EQ(c.repeated[0].first_line, 10u);
-  EXPECT_EQ(c.repeated[0].last_line, 15u);
-  EXPECT_EQ(c.before_um.p95, c.rounds[0].error_um.p95) << "the given program, cut once";
-  EXPECT_EQ(c.surface_before.size(), c.surface_after.size());
-  EXPECT_LE(c.depth_after.gouge_depth_p999_um, c.depth_limit_um);
+  EXPECT_EQ(c.figures.feed_after.time_s, c.rounds[c.best].machine_time_s);
+  EXPECT_GE(c.passes.allowance_mm, 0.02);
+  ASSERT_EQ(c.passes.runs.size(), 2u);
+  EXPECT_EQ(c.passes.runs[0].first_line, 10u);
+  EXPECT_EQ(c.passes.runs[0].last_line, 15u);
+  EXPECT_EQ(c.figures.before_um.p95, c.rounds[0].error_um.p95) << "the given program, cut once";
+  EXPECT_EQ(c.surfaces.before.size(), c.surfaces.after.size());
+  EXPECT_LE(c.safety.after.gouge_depth_p999_um, c.safety.depth_limit_um);
 
   // Beside coordinates the text differs by the first cuts and the rapids back alone. A split block's further lines have
   // coordinates only.
-  const SourceText given("", tests::file_text(job.program)), emitted("", c.text);
-  ASSERT_EQ(c.block_of_line.size(), emitted.line_count());
+  const SourceText given("", tests::file_text(job.program)), emitted("", c.emitted.text);
+  ASSERT_EQ(c.emitted.block_of_line.size(), emitted.line_count());
   std::vector<std::string> lines, back;
   std::vector<std::size_t> times(given.line_count(), 0);
   for (std::size_t i = 0; i < emitted.line_count(); ++i) {
     const std::string line(emitted.line(i + 1));
-    const std::uint32_t block = c.block_of_line[i];
+    const std::uint32_t block = c.emitted.block_of_line[i];
     if (block == nc::Emission::kNoBlock) {
       back.push_back(line);
       continue;
@@ -140,11 +140,11 @@ TEST(Compensate, CutsTwiceWhereNoShiftHelps) {
   }
 
   const tests::TempFolder folder;
-  const Record record = make_record(job, c, folder.write("out.nc", c.text));
+  const Record record = make_record(job, c, folder.write("out.nc", c.emitted.text));
   const machine::Job judging = machine::read_job(folder.write("out.verify.toml", record.job), diagnostics);
   const Verification v = verify(judging, record, diagnostics, {});
-  EXPECT_NEAR(v.plain.error_um.p95, c.after_um.p95, 1e-6) << "from the emitted text";
-  EXPECT_NEAR(v.plain.error_um.rms, c.after_um.rms, 1e-6);
+  EXPECT_NEAR(v.plain.error_um.p95, c.figures.after_um.p95, 1e-6) << "from the emitted text";
+  EXPECT_NEAR(v.plain.error_um.rms, c.figures.after_um.rms, 1e-6);
 }
 
 TEST(Compensate, RefusesPassesWhereNothingCanBeCutTwice) {
@@ -232,24 +232,24 @@ TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates) {
   job.compensation.goal = machine::Goal::tolerance;  // the other one tries the third round, too
   Diagnostics diagnostics;
   const CompensationResult c = compensate(job, diagnostics, {});
-  EXPECT_GT(c.quality.shortest_mm, 0) << "blocks were split";
-  EXPECT_LE(c.row_turn_rad, job.compensation.max_angle_growth_rad);
-  EXPECT_GT(c.row_turn_rad, 0);
-  EXPECT_GT(c.before_um.mean, 8);
-  EXPECT_LT(std::abs(c.after_um.mean), 1.0);
-  EXPECT_LT(c.after_um.p95, 0.35 * c.before_um.p95);
-  EXPECT_GT(c.max_shift_mm, 0.005);
-  EXPECT_LT(c.max_shift_mm, 0.05);
+  EXPECT_GT(c.path.quality.shortest_mm, 0) << "blocks were split";
+  EXPECT_LE(c.path.row_turn_rad, job.compensation.max_angle_growth_rad);
+  EXPECT_GT(c.path.row_turn_rad, 0);
+  EXPECT_GT(c.figures.before_um.mean, 8);
+  EXPECT_LT(std::abs(c.figures.after_um.mean), 1.0);
+  EXPECT_LT(c.figures.after_um.p95, 0.35 * c.figures.before_um.p95);
+  EXPECT_GT(c.path.max_shift_mm, 0.005);
+  EXPECT_LT(c.path.max_shift_mm, 0.05);
   EXPECT_EQ(c.rounds.size(), 3u);
-  EXPECT_EQ(c.stop, Stop::stalled) << "a third round is not expected to lower the rms by a twentieth";
+  EXPECT_EQ(c.verdict.stop, Stop::stalled) << "a third round is not expected to lower the rms by a twentieth";
 
-  EXPECT_GT(c.split_before.correctable_um, 8);
-  EXPECT_LT(c.split_after.correctable_um, 0.15 * c.split_before.correctable_um);  // in two rounds
-  EXPECT_LE(c.quality.angle_growth_rad, job.compensation.max_angle_growth_rad);
-  EXPECT_TRUE(c.within_part);
+  EXPECT_GT(c.figures.split_before.correctable_um, 8);
+  EXPECT_LT(c.figures.split_after.correctable_um, 0.15 * c.figures.split_before.correctable_um);  // in two rounds
+  EXPECT_LE(c.path.quality.angle_growth_rad, job.compensation.max_angle_growth_rad);
+  EXPECT_TRUE(c.safety.within_part);
 
   // Lines that only split a block hold nothing but coordinates.
-  std::string left = without_coordinates(c.text);
+  std::string left = without_coordinates(c.emitted.text);
   left = std::regex_replace(left, std::regex("\n(?=\n)"), "");
   std::string wanted = without_coordinates(plane_program());
   wanted = std::regex_replace(wanted, std::regex("\n(?=\n)"), "");
@@ -257,7 +257,7 @@ TEST(Compensate, LowersTheErrorAndChangesNothingButCoordinates) {
 
   // What was emitted reads without complaint and has the same feeds.
   Diagnostics of_emitted;
-  const auto text = nc::read_program(SourceText("emitted.nc", c.text), of_emitted);
+  const auto text = nc::read_program(SourceText("emitted.nc", c.emitted.text), of_emitted);
   const auto moves = nc::interpret(text, {}, of_emitted);
   EXPECT_TRUE(of_emitted.all().empty());
   for (const auto& m : moves.moves) {
@@ -274,10 +274,10 @@ TEST(Compensate, MakesNoNewCornersWhereTheControlStopsAtEveryOne) {
   job.compensation.max_rounds = 1;
   Diagnostics diagnostics;
   const CompensationResult c = compensate(job, diagnostics, {});
-  EXPECT_EQ(c.blocks_after, c.blocks_before);
-  EXPECT_EQ(c.quality.shortest_mm, 0);
-  EXPECT_LT(c.split_after.correctable_um, 0.3 * c.split_before.correctable_um);
-  EXPECT_EQ(c.stop, Stop::stalled) << "a second round is not expected to bring a tenth";
+  EXPECT_EQ(c.emitted.blocks_after, c.emitted.blocks_before);
+  EXPECT_EQ(c.path.quality.shortest_mm, 0);
+  EXPECT_LT(c.figures.split_after.correctable_um, 0.3 * c.figures.split_before.correctable_um);
+  EXPECT_EQ(c.verdict.stop, Stop::stalled) << "a second round is not expected to bring a tenth";
 }
 
 TEST(Compensate, GivesTheSameProgramTwice) {
@@ -285,7 +285,7 @@ TEST(Compensate, GivesTheSameProgramTwice) {
   machine::Job job = plane_job(folder);
   job.compensation.max_rounds = 1;
   Diagnostics diagnostics;
-  EXPECT_EQ(compensate(job, diagnostics, {}).text, compensate(job, diagnostics, {}).text);
+  EXPECT_EQ(compensate(job, diagnostics, {}).emitted.text, compensate(job, diagnostics, {}).emitted.text);
 }
 
 TEST(Compensate, HoldsToTheLargestShift) {
@@ -295,11 +295,11 @@ TEST(Compensate, HoldsToTheLargestShift) {
   job.compensation.max_shift_mm = 0.004;
   Diagnostics diagnostics;
   const CompensationResult c = compensate(job, diagnostics, {});
-  EXPECT_LE(c.max_shift_mm, 0.004 + 1e-12);
+  EXPECT_LE(c.path.max_shift_mm, 0.004 + 1e-12);
   EXPECT_GT(c.rounds.back().limited_points, 0u);
-  EXPECT_GT(c.split_after.limited_um, 5);
-  EXPECT_GT(c.depth_without_bending.gouge_depth_p999_um, 0.5 * c.depth_without_bending.deepest_um);
-  EXPECT_LE(c.depth_without_bending.deepest_um, 4.0 + 1.0);  // and what a grid of 0.15 mm shows of cusps
+  EXPECT_GT(c.figures.split_after.limited_um, 5);
+  EXPECT_GT(c.safety.without_bending.gouge_depth_p999_um, 0.5 * c.safety.without_bending.deepest_um);
+  EXPECT_LE(c.safety.without_bending.deepest_um, 4.0 + 1.0);  // and what a grid of 0.15 mm shows of cusps
 }
 
 TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth) {
@@ -308,18 +308,18 @@ TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth) {
   Diagnostics diagnostics;
   job.compensation.max_rounds = 1;
   const CompensationResult free = compensate(job, diagnostics, {});
-  ASSERT_GT(free.depth_after.gouge_depth_p999_um, 1.5);
-  EXPECT_GE(free.depth_after.deepest_um, free.depth_after.gouge_depth_p999_um);
-  EXPECT_TRUE(free.within_part);  // 50 um are allowed
-  job.compensation.max_overcut_um = 0.5 * free.depth_after.gouge_depth_p999_um;
+  ASSERT_GT(free.safety.after.gouge_depth_p999_um, 1.5);
+  EXPECT_GE(free.safety.after.deepest_um, free.safety.after.gouge_depth_p999_um);
+  EXPECT_TRUE(free.safety.within_part);  // 50 um are allowed
+  job.compensation.max_overcut_um = 0.5 * free.safety.after.gouge_depth_p999_um;
   const CompensationResult guarded = compensate(job, diagnostics, {});
   EXPECT_TRUE(guarded.rounds.back().guard);
   EXPECT_EQ(guarded.rounds.size(), free.rounds.size() + 1) << "one round, since its lifts are weighed beforehand";
-  EXPECT_LT(guarded.depth_after.gouge_depth_p999_um, 0.9 * free.depth_after.gouge_depth_p999_um);
-  EXPECT_EQ(guarded.within_part, guarded.depth_after.gouge_depth_p999_um <= job.compensation.max_overcut_um);
+  EXPECT_LT(guarded.safety.after.gouge_depth_p999_um, 0.9 * free.safety.after.gouge_depth_p999_um);
+  EXPECT_EQ(guarded.safety.within_part, guarded.safety.after.gouge_depth_p999_um <= job.compensation.max_overcut_um);
   double deepest = 0;
-  for (const auto& p : guarded.surface_after) deepest = std::max(deepest, -1000 * p.error_mm);
-  EXPECT_NEAR(std::max(guarded.depth_after.deepest_um, guarded.depth_others.deepest_um), deepest, 1e-9);
+  for (const auto& p : guarded.surfaces.after) deepest = std::max(deepest, -1000 * p.error_mm);
+  EXPECT_NEAR(std::max(guarded.safety.after.deepest_um, guarded.safety.others.deepest_um), deepest, 1e-9);
 }
 
 TEST(Compensate, TheGuardMakesNoRoundWhereNoShiftCanLiftThePathEnough) {
@@ -331,8 +331,8 @@ TEST(Compensate, TheGuardMakesNoRoundWhereNoShiftCanLiftThePathEnough) {
   job.compensation.max_overcut_um = 5;
   Diagnostics diagnostics;
   const CompensationResult bound = compensate(job, diagnostics, {});
-  EXPECT_FALSE(bound.within_part);
-  EXPECT_GT(bound.depth_after.gouge_depth_p999_um, 10) << "not even with the largest shift";
+  EXPECT_FALSE(bound.safety.within_part);
+  EXPECT_GT(bound.safety.after.gouge_depth_p999_um, 10) << "not even with the largest shift";
   EXPECT_EQ(bound.rounds.size(), 2u) << "the first one has shifted as far as it may";
   for (const Round& r : bound.rounds) EXPECT_FALSE(r.guard);
 }
@@ -345,11 +345,11 @@ TEST(Compensate, NothingIsEmittedWhereNoRoundIsBetter) {
   job.tools[1].youngs_modulus_MPa = 1e12;
   job.compensation.tolerance_um = 1e-6;
   const CompensationResult none = compensate(job, diagnostics, {});
-  EXPECT_FALSE(none.better);
+  EXPECT_FALSE(none.verdict.better);
   EXPECT_EQ(none.best, 0u);
-  EXPECT_EQ(none.text, plane_program());
-  EXPECT_EQ(none.after_um.rms, none.before_um.rms) << "the verdict is on what is emitted";
-  EXPECT_FALSE(none.within_tolerance);
+  EXPECT_EQ(none.emitted.text, plane_program());
+  EXPECT_EQ(none.figures.after_um.rms, none.figures.before_um.rms) << "the verdict is on what is emitted";
+  EXPECT_FALSE(none.verdict.within_tolerance);
   EXPECT_GT(none.rounds.size(), 1u);
 }
 
@@ -358,19 +358,19 @@ TEST(Compensate, TheFiguresAreOfTheEmittedProgram) {
   machine::Job job = plane_job(folder);
   Diagnostics diagnostics;
   const CompensationResult c = compensate(job, diagnostics, {});
-  ASSERT_TRUE(c.better);
+  ASSERT_TRUE(c.verdict.better);
   machine::Job verify = job;
-  verify.program = folder.write("emitted.nc", c.text);
+  verify.program = folder.write("emitted.nc", c.emitted.text);
   verify.part.program = job.program;
   const auto emitted = simulate::simulate_motion(SourceText::read(verify.program), verify, {}, diagnostics);
   const auto given = simulate::simulate_motion(SourceText::read(job.program), verify, {}, diagnostics);
   const auto target = simulate::make_target(verify, given, diagnostics);
   const auto fresh = simulate::predict(verify, target, emitted, {});
   // Every move is compensated here, so that everything is in reach.
-  EXPECT_NEAR(fresh.form_error_um.rms, c.after_um.rms, 1e-6);
-  EXPECT_NEAR(fresh.form_error_um.p95, c.after_um.p95, 1e-6);
-  EXPECT_NEAR(fresh.form_error_um.area_mm2, c.plain_after.error_um.area_mm2, 1e-6);
-  EXPECT_EQ(c.within_tolerance, c.after_um.p95 <= job.compensation.tolerance_um);
+  EXPECT_NEAR(fresh.form_error_um.rms, c.figures.after_um.rms, 1e-6);
+  EXPECT_NEAR(fresh.form_error_um.p95, c.figures.after_um.p95, 1e-6);
+  EXPECT_NEAR(fresh.form_error_um.area_mm2, c.figures.plain_after.error_um.area_mm2, 1e-6);
+  EXPECT_EQ(c.verdict.within_tolerance, c.figures.after_um.p95 <= job.compensation.tolerance_um);
 }
 
 TEST(Compensate, JudgesOnAnotherGridAndMovesTheParameters) {
@@ -383,17 +383,19 @@ TEST(Compensate, JudgesOnAnotherGridAndMovesTheParameters) {
   options.header = [](const CompensationResult&) { return std::string("TOLD"); };
   Diagnostics diagnostics;
   const CompensationResult c = compensate(job, diagnostics, options);
-  ASSERT_EQ(c.rechecks.size(), 1u);
-  EXPECT_NEAR(c.rechecks[0].before_um.rms / c.before_um.rms, 1, 0.1);
-  EXPECT_LT(c.rechecks[0].split_after.correctable_um, 0.15 * c.rechecks[0].split_before.correctable_um);
-  ASSERT_TRUE(c.band);
+  ASSERT_EQ(c.uncertainty.rechecks.size(), 1u);
+  EXPECT_NEAR(c.uncertainty.rechecks[0].before_um.rms / c.figures.before_um.rms, 1, 0.1);
+  EXPECT_LT(c.uncertainty.rechecks[0].split_after.correctable_um,
+            0.15 * c.uncertainty.rechecks[0].split_before.correctable_um);
+  ASSERT_TRUE(c.uncertainty.band);
   // Rigid coupling: the deflection is force times compliance, ten per cent of either are the same and move the surface
   // by about ten per cent of what the tool bends (not all of the error at the plane's edges comes from that).
-  ASSERT_EQ(c.band->groups.size(), 2u);
-  EXPECT_NEAR(c.band->groups[0].rms_um, c.band->groups[1].rms_um, 1e-3 * c.band->groups[0].rms_um);
-  EXPECT_GT(c.band->groups[0].rms_um / c.before_um.rms, 0.04);
-  EXPECT_LT(c.band->groups[0].rms_um / c.before_um.rms, 0.12);
-  EXPECT_NE(c.text.find("(PLANE)\n(TOLD)\nG21"), std::string::npos);
+  ASSERT_EQ(c.uncertainty.band->groups.size(), 2u);
+  EXPECT_NEAR(c.uncertainty.band->groups[0].rms_um, c.uncertainty.band->groups[1].rms_um,
+              1e-3 * c.uncertainty.band->groups[0].rms_um);
+  EXPECT_GT(c.uncertainty.band->groups[0].rms_um / c.figures.before_um.rms, 0.04);
+  EXPECT_LT(c.uncertainty.band->groups[0].rms_um / c.figures.before_um.rms, 0.12);
+  EXPECT_NE(c.emitted.text.find("(PLANE)\n(TOLD)\nG21"), std::string::npos);
 }
 
 }  // namespace

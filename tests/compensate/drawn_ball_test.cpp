@@ -136,9 +136,10 @@ TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromASlopeOfBallRows) {
   const auto program = [&](const std::string& text) {
     return simulate::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
   };
-  std::cout << fmt::format("camber: rms {:.2f} to {:.2f}, correctable {:.2f} to {:.3f} um\n", c.before_um.rms,
-                           c.after_um.rms, c.split_before.correctable_um, c.split_after.correctable_um);
-  const auto given = program(rows_to_and_fro()), emitted = program(c.text);
+  std::cout << fmt::format("camber: rms {:.2f} to {:.2f}, correctable {:.2f} to {:.3f} um\n", c.figures.before_um.rms,
+                           c.figures.after_um.rms, c.figures.split_before.correctable_um,
+                           c.figures.split_after.correctable_um);
+  const auto given = program(rows_to_and_fro()), emitted = program(c.emitted.text);
   const Judged before = judge(job, given, given), after = judge(job, emitted, given);
   std::filesystem::remove_all(folder);
   for (const auto& [row, mean] : before.row_um)

@@ -91,7 +91,7 @@ TEST(DrawnJudgeSlow, FindsWhatAShiftCanCorrectGoneFromTheWallOfSample06) {
   const auto program = [&](const std::string& text) {
     return simulate::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
   };
-  const auto given = program(SourceText::read(job.program).text()), emitted = program(c.text);
+  const auto given = program(SourceText::read(job.program).text()), emitted = program(c.emitted.text);
   const Judged before = judge(job, given, given), after = judge(job, emitted, given);
   std::cout << fmt::format(
       "stretch X {:g} to {:g}: rms {:.2f} to {:.2f} um, mean {:.2f} to {:.2f}, correctable {:.2f} to {:.3f} ({:+.1f} "

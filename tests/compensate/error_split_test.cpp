@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "compensate/guard.h"
+#include "compensate/gouge_guard.h"
 #include "compensate/sensitivity.h"
 
 namespace camber::compensate {

@@ -162,11 +162,11 @@ TEST(HiddenRows, ARasterToAndFroIsCorrectedThoughEverySecondRowIsHidden) {
   std::string rounds;
   for (const Round& r : c.rounds)
     rounds += fmt::format("{:.2f} um p95, {:.2f} um rms\n", r.error_um.p95, r.error_um.rms);
-  EXPECT_GT(c.before_um.p95, 5);
+  EXPECT_GT(c.figures.before_um.p95, 5);
   // Fitted to what the surface shows, the first round leaves 0.37 of it: the hidden rows stay where they are.
-  EXPECT_LT(c.rounds[1].error_um.p95, 0.2 * c.before_um.p95) << rounds;
-  EXPECT_LT(c.after_um.p95, 0.45 * c.before_um.p95) << rounds;
-  EXPECT_LT(c.after_um.rms, 0.4 * c.before_um.rms);
+  EXPECT_LT(c.rounds[1].error_um.p95, 0.2 * c.figures.before_um.p95) << rounds;
+  EXPECT_LT(c.figures.after_um.p95, 0.45 * c.figures.before_um.p95) << rounds;
+  EXPECT_LT(c.figures.after_um.rms, 0.4 * c.figures.before_um.rms);
 }
 
 }  // namespace

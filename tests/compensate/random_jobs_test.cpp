@@ -66,22 +66,14 @@ void expect_kept_promises(unsigned seed) {
   Diagnostics diagnostics;
   const machine::Job job = random_job(seed, folder);
   const CompensationResult c = compensate(job, diagnostics, {});
-  EXPECT_LE(c.after_um.rms, c.before_um.rms);
-  EXPECT_LE(c.after_um.p95, c.before_um.p95);
-  EXPECT_LE(c.depth_after.gouge_depth_p999_um, std::max(c.depth_limit_um, c.depth_before.gouge_depth_p999_um));
-  EXPECT_LE(c.feed_after.time_s, 1.104 * c.feed_before.time_s) << "the budget by default, and its room";
-  ASSERT_EQ(c.surface_before.size(), c.surface_after.size());
-  FILE* f = fopen(fmt::format("/tmp/comp/dump/{}.csv", seed).c_str(), "w");
-  for (std::size_t i = 0; i < c.surface_before.size(); ++i) {
-    const auto &b = c.surface_before[i], &a = c.surface_after[i];
-    fmt::print(f, "{},{},{},{},{},{},{},{},{},{},{},{}\n", b.place_mm.x(), b.place_mm.y(), b.place_mm.z(), b.normal.x(),
-               b.normal.y(), b.normal.z(), 1000 * b.error_mm, 1000 * a.error_mm, b.area_mm2, b.machined_stamp,
-               a.machined_stamp, b.target_stamp);
-  }
-  fclose(f);
+  EXPECT_LE(c.figures.after_um.rms, c.figures.before_um.rms);
+  EXPECT_LE(c.figures.after_um.p95, c.figures.before_um.p95);
+  EXPECT_LE(c.safety.after.gouge_depth_p999_um, std::max(c.safety.depth_limit_um, c.safety.before.gouge_depth_p999_um));
+  EXPECT_LE(c.figures.feed_after.time_s, 1.104 * c.figures.feed_before.time_s) << "the budget by default, and its room";
+  ASSERT_EQ(c.surfaces.before.size(), c.surfaces.after.size());
   double worse_um = 0, area = 0, worse_area = 0, over_area = 0;
-  for (std::size_t i = 0; i < c.surface_before.size(); ++i) {
-    const auto &before = c.surface_before[i], &after = c.surface_after[i];
+  for (std::size_t i = 0; i < c.surfaces.before.size(); ++i) {
+    const auto &before = c.surfaces.before[i], &after = c.surfaces.after[i];
     if (!before.valid || !after.valid) continue;
     const double more_um = 1000 * (std::abs(after.error_mm) - std::abs(before.error_mm));
     worse_um = std::max(worse_um, more_um);
@@ -94,13 +86,13 @@ void expect_kept_promises(unsigned seed) {
   // where the ball leaves both signs at one place: bounds that cost over a quarter of the percentile make room for it.
   EXPECT_LE(worse_um, kWorstPoint_um);
   EXPECT_LE(over_area, kWorseFraction * area);
-  EXPECT_NEAR(c.worse.area_fraction, over_area / area, 1e-9);
+  EXPECT_NEAR(c.figures.worse.area_fraction, over_area / area, 1e-9);
   fmt::print(
       "seed {}: p95 {:.2f} to {:.2f} um, worse by {:.2f} um, {:.3f} % of the area by more than 1 um, {:.3f} % of it "
       "over "
       "the tolerance; round {} of {}\n",
-      seed, c.before_um.p95, c.after_um.p95, worse_um, 100 * worse_area / area, 100 * over_area / area, c.best,
-      c.rounds.size() - 1);
+      seed, c.figures.before_um.p95, c.figures.after_um.p95, worse_um, 100 * worse_area / area, 100 * over_area / area,
+      c.best, c.rounds.size() - 1);
 }
 
 TEST_P(RandomJobs, AreNeverWorseThanGivenNorBeyondTheirLimits) { expect_kept_promises(GetParam()); }

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "compensate/fit_shift.h"
-#include "compensate/surface_steps.h"
+#include "compensate/path_quality.h"
 
 namespace camber::compensate {
 namespace {

@@ -75,13 +75,13 @@ TEST(DrawnJudgeStaticSlow, FindsTheWallOfSample06StraightAfterASlowSecondCut) {
   const CompensationResult c = compensate(job, diagnostics, options);
   const FinishedWall wall = wall_of(job);
   job.operations = {};
-  const auto emitted = simulate::simulate_motion(SourceText(job.program, c.text), job, {}, diagnostics);
+  const auto emitted = simulate::simulate_motion(SourceText(job.program, c.emitted.text), job, {}, diagnostics);
   const std::vector<WallPass> passes = passes_of(emitted);
   ASSERT_EQ(passes.size(), 2u);
   testing::WallJudgeSteps steps;
   steps.rotation_deg = 0.5;
   const auto before = testing::judged_figures(wall, steps), after = testing::judged_figures(wall, passes, steps);
-  const auto camber_before = predicted_um(wall, c.surface_before), camber_after = predicted_um(wall, c.surface_after);
+  const auto camber_before = predicted_um(wall, c.surfaces.before), camber_after = predicted_um(wall, c.surfaces.after);
   for (const WallPass& p : passes)
     std::cout << fmt::format("pass {:.1f} um towards the wall, {:.4f} mm a tooth\n", 1000 * p.offset_mm, p.feed_mm);
   std::cout << fmt::format("rms over the height: judge {:.2f} to {:.2f} um, Camber {:.2f} to {:.2f}\n",

@@ -18,7 +18,7 @@ compensate::Round round(double time_s, double p95_um, std::size_t slowed, std::s
 
 compensate::CompensationResult example() {
   compensate::CompensationResult c;
-  c.feed_before.time_s = 10;
+  c.figures.feed_before.time_s = 10;
   c.rounds = {round(10, 50, 0, 0), round(10, 8, 0, 0), round(11, 6, 4, 0), round(20, 3, 0, 2)};
   c.time_points = {{0, 1}, {10, 2}, {100, 3}};
   c.best = 3;
@@ -51,8 +51,8 @@ TEST(TimeErrorSvg, IsEmptyWithoutALeverThatTakesTime) {
 
 TEST(CompensateText, ListsMachineTimeAgainstErrorAndWhatIsCutTwice) {
   compensate::CompensationResult c = example();
-  c.repeated = {{9, 14}, {19, 23}};
-  c.pass_allowance_mm = 0.025;
+  c.passes.runs = {{9, 14}, {19, 23}};
+  c.passes.allowance_mm = 0.025;
   const std::string text = compensate_text(c, 0);
   EXPECT_NE(text.find("extra time allowed    machine time, s        p95, um   rms, um   changes of feed   cut twice\n"
                       "               0 %        10.0 (  +0.0 %)      8.00      0.00                 0           0\n"

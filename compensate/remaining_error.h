@@ -1,0 +1,92 @@
+#pragma once
+// Verdict on a program: error figures of the surface of the compensated moves, and the causes of the remaining error.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compensate/attribution.h"
+#include "compensate/error_split.h"
+#include "compensate/safety.h"
+#include "machine/job.h"
+#include "removal/form_error.h"
+
+namespace camber::compensate {
+
+/// Weighted by area over everything that the moves to compensate can reach; nothing else is left out but what the map
+/// cannot see.
+struct PlainFigures {
+  removal::ErrorFigures error_um, deflection_um, contour_um;
+  std::optional<removal::ErrorFigures> total_um;  ///< against the part's mesh
+  /// Of deflection_um, where the part yields.
+  std::optional<removal::ErrorFigures> tool_um{}, part_um{};
+  double in_band_fraction = 0;  ///< of the area whose judged error is within tolerance or profile
+};
+
+/// `observed`: of the same surface, with its reach. `total_mm`: one per point, or empty.
+PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, const std::vector<double>& total_mm,
+                           const Observed& observed, const machine::CompensationSettings& asked);
+
+/// The judged error: error_um, or deflection_um if the reference is the machine.
+const removal::ErrorFigures& judged_of(const PlainFigures& figures, machine::Reference reference);
+
+/// The 95th percentile is within tolerance_um; with profile_um: 95 % of the area is within the band.
+bool within_tolerance(const PlainFigures& figures, const machine::CompensationSettings& asked);
+
+/// The same of judged errors, um, each of an area.
+bool within_tolerance(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
+                      const machine::CompensationSettings& asked);
+
+/// What the contour error of a piece of surface comes from (simulate/contour.h).
+enum class ContourCause { none, lag, path_tolerance, corner_law };
+/// The part of the contour error that makes half or more of the error of the points with `cause`. `surface`: the same
+/// points.
+ContourCause contour_cause_of(Cause cause, const std::vector<PointCause>& points,
+                              const std::vector<removal::SurfacePoint>& surface);
+
+/// 95th percentile of magnitudes, by area; 0 where there are none.
+double p95_of(const std::vector<double>& error_um, const std::vector<double>& area_mm2);
+
+/// A part of the remaining error, and the lines of the program with most of it.
+struct CauseFigure {
+  Cause cause = Cause::correctable;
+  double rms_um = 0;
+  std::vector<ProgramLine> lines{};           ///< the worst ones, ascending
+  ContourCause contour = ContourCause::none;  ///< of what changes faster than a smooth shift can
+  std::vector<std::string> remedies{};        ///< that were not tried
+};
+
+/// Those that make a tenth of the mean square or more, the largest first, without remedies. `lines`: one per point of
+/// the surface.
+std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
+                                   const Observed& observed, const std::vector<ProgramLine>& lines);
+
+inline constexpr const char *kMaxShiftKey = "max_shift_mm", *kAngleGrowthKey = "max_angle_growth_deg",
+                            *kOvercutKey = "max_overcut_um", *kProfileKey = "profile_um";
+
+/// A limit of the job that kept the path from the shifts that its error asks for.
+struct BindingLimit {
+  std::string key;   ///< "max_shift_mm"
+  double value = 0;  ///< of the job, in the key's unit
+  double binds_no_more_at = 0;
+  bool own = true;  ///< false: the job does not give it
+};
+/// "max_shift_mm = 0.1 binds; from 0.134 on it would not".
+std::string sentence(const BindingLimit& limit);
+
+/// What a compensation has used.
+struct Tried {
+  bool rounds = false;  ///< they ended before max_rounds: one more was not worth it
+  bool feeds = false, second_cuts = false;
+  std::vector<BindingLimit> limits{};
+};
+/// What may take a cause away and has not been tried.
+std::vector<std::string> remedies_of(const CauseFigure& cause, const Tried& tried);
+
+/// "line 12", "lines 12, 14 (15 as emitted)".
+std::string lines_text(const std::vector<ProgramLine>& lines);
+
+/// "4.10 um rms differs along the cutter (helix bow), most in lines 12, 14 (15 as emitted); a shorter tool would remove
+/// it".
+std::string sentence(const CauseFigure& cause);
+
+}  // namespace camber::compensate

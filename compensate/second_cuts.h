@@ -1,0 +1,25 @@
+#pragma once
+// Versions of the program in which runs are cut twice.
+#include <memory>
+#include <vector>
+
+#include "compensate/passes.h"
+#include "compensate/state.h"
+
+namespace camber::compensate {
+
+/// The runs with what the best shifts leave of each. `given`: the version of the given program; its path has those
+/// shifts afterwards.
+std::vector<PassRun> runs_after_shifts(const Task& task, Version& given);
+
+struct SecondCutVersion {
+  std::unique_ptr<Version> version{};  ///< null: none of the runs can be cut twice
+  bool too_slow = false;               ///< runs were left out for want of time
+};
+
+/// The given program with the chosen runs cut twice, within `allowed_s` of machine time. The path of `given` has the
+/// shifts of the first cuts afterwards.
+SecondCutVersion version_with(const Task& task, Version& given, const std::vector<PassRun>& runs,
+                              std::vector<std::size_t> chosen, double allowed_s);
+
+}  // namespace camber::compensate
