@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "machine/assumptions.h"
 #include "machine/job_programs.h"
+#include "report/chatter_page.h"
 #include "report/feature_results.h"
 #include "report/summary.h"
 
@@ -69,6 +70,7 @@ int predict_program(const machine::Job& job, Diagnostics diagnostics, const Pred
     fmt::print("{}{}{}", machine::assumptions_text(assumed),
                report::predict_text(program, prediction, compute_s, prepared.traced_run()),
                report::features_text(features));
+  if (arguments.explain) fmt::print("{}", report::chatter_explanation(job, prediction.chatter));
   failed.throw_if_errors();
   settle(of_cut, options);
   for (const std::string& sentence : wrong) print_error(sentence);

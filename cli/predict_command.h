@@ -14,6 +14,7 @@ struct PredictArguments {
   std::string trace;          ///< servo trace at whose positions is cut; empty: none
   std::string columns;        ///< column map of the trace; empty: none
   bool meshes = false;        ///< machined.stl, machined.ply and form_error_mesh.ply
+  bool explain = false;       ///< how uncertain the margins of chatter are
 };
 
 /// Writes feed.csv, forces.csv, spindle_load.csv, form_error.csv, form_error.vtp, stock.vdb, report.html and
