@@ -136,8 +136,7 @@ std::vector<SpeedChange> find_speed_changes(const machine::Job& job, const simul
     if (o.margin > limit) {
       const simulate::SpeedBounds bounds = bounds_of(job, program, c);
       if (bounds.lowest_rpm < bounds.highest_rpm) {
-        const auto found =
-            simulate::find_stable_speed(job, program, loads, o.tool, o.speed_rpm, bounds, kAim * limit);
+        const auto found = simulate::find_stable_speed(job, program, loads, o.tool, o.speed_rpm, bounds, kAim * limit);
         c.advised_rpm = found.rpm;
         c.best_rpm = found.best_rpm;
         if (found.best_margin > 0) c.best_depth_mm = limit * o.depth_mm / found.best_margin;

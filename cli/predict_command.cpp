@@ -70,7 +70,7 @@ int predict_program(const machine::Job& job, Diagnostics diagnostics, const Pred
     fmt::print("{}{}{}", machine::assumptions_text(assumed),
                report::predict_text(program, prediction, compute_s, prepared.traced_run()),
                report::features_text(features));
-  if (arguments.explain) fmt::print("{}", report::chatter_explanation(job, prediction.chatter));
+  if (arguments.explain && !options.quiet) fmt::print("{}", report::chatter_explanation(job, prediction.chatter));
   failed.throw_if_errors();
   settle(of_cut, options);
   for (const std::string& sentence : wrong) print_error(sentence);

@@ -46,7 +46,10 @@ std::vector<SevereCut> severe_cuts(const machine::Job& job, const SimulatedProgr
 class SpeedSearch {
  public:
   SpeedSearch(const machine::Job& job, int tool, std::vector<SevereCut> cuts, double margin)
-      : job_(job), tool_(job.tools.at(tool)), modes_(dynamics::modes_of(tool_)), cuts_(std::move(cuts)),
+      : job_(job),
+        tool_(job.tools.at(tool)),
+        modes_(dynamics::modes_of(tool_)),
+        cuts_(std::move(cuts)),
         margin_(margin) {}
 
   StableSpeed run(double programmed_rpm, const SpeedBounds& bounds) {

@@ -20,9 +20,9 @@ struct StableSpeed {
   double best_margin = 0;
 };
 
-/// The nearest speed within the bounds at which no tooth passing of the tool at `speed_rpm` has more than `margin`, with
-/// the chips as they are: the feed changes with the speed. Speeds are tried in 150 steps, whole tens as a shop sets
-/// them. The most severe kinds of cut count, kSevereCuts at most.
+/// The nearest speed within the bounds at which no tooth passing of the tool at `speed_rpm` has more than `margin`,
+/// with the chips as they are: the feed changes with the speed. Speeds are tried in 150 steps, whole tens as a shop
+/// sets them. The most severe kinds of cut count, kSevereCuts at most.
 StableSpeed find_stable_speed(const machine::Job& job, const SimulatedProgram& program,
                               std::span<const StampLoad> loads, int tool, double speed_rpm, const SpeedBounds& bounds,
                               double margin = kAdvisedMargin);

@@ -82,8 +82,7 @@ class SpeedWords {
     const auto word = rules_->speed_word(writer.block(), speed.programmed);
     if (!word) return refuse("its S word is no plain number of the program", writer.block());
     const std::size_t from = word->offset + word->value_at, length = std::size_t{word->length} - word->value_at;
-    writer.replace(from, length,
-                   format_number(speed.rpm, 0, kSpeedStyle, program_.source.text().substr(from, length)));
+    writer.replace(from, length, format_number(speed.rpm, 0, kSpeedStyle, program_.source.text().substr(from, length)));
   }
 
   /// Of an S word before its number: "S", "S1=".

@@ -40,9 +40,10 @@ machine::Job chatter_job(const TempFolder& folder, const ChatterJob& j) {
     job += fmt::format(
         "[[tool.1.mode]]\ndirection = \"{}\"\nfrequency_Hz = {}\ndamping_percent = 2.9\nstiffness_N_per_um = 9.3\n",
         direction, hz);
-  job += "[material]\nktc_MPa = 800.0\nkrc_MPa = 250.0\nkte_N_per_mm = 10.0\nkre_N_per_mm = 10.0\n[stock]\n"
-         "box_mm = [[0, 0, -5], [12, 20, 0]]\n[simulation]\nvoxel_mm = 0.4\ncoupling = \"rigid\"\n[adapt]\n" +
-         j.adapt;
+  job +=
+      "[material]\nktc_MPa = 800.0\nkrc_MPa = 250.0\nkte_N_per_mm = 10.0\nkre_N_per_mm = 10.0\n[stock]\n"
+      "box_mm = [[0, 0, -5], [12, 20, 0]]\n[simulation]\nvoxel_mm = 0.4\ncoupling = \"rigid\"\n[adapt]\n" +
+      j.adapt;
   folder.write("job.toml", job);
   Diagnostics diagnostics;
   return machine::read_job(folder / "job.toml", diagnostics);

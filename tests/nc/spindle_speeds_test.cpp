@@ -1,6 +1,6 @@
 #include "nc/spindle_speeds.h"
 
-#include "tests/nc/siemens_text.h"
+#include "tests/nc/nc_text.h"
 
 namespace camber::nc {
 namespace {
@@ -37,8 +37,7 @@ TEST(SpindleSpeeds, GetALineWhereNoSWordStands) {
             "S9000 M3\nT1 M6\nG0 X0 Y0 Z0\nG1 X10. F100\nT2 M6\nG0 X0\nS7000\nG1 X5.\nX6.\nM30\n");
   EXPECT_EQ(second.emission.block_of_line, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 6, 7, 8}));
   const SpeedEmission first = with_speeds(r, {{1, 9000, 7000}});
-  EXPECT_EQ(first.emission.text,
-            "S7000 M3\nT1 M6\nG0 X0 Y0 Z0\nG1 X10. F100\nT2 M6\nG0 X0\nS9000\nG1 X5.\nX6.\nM30\n");
+  EXPECT_EQ(first.emission.text, "S7000 M3\nT1 M6\nG0 X0 Y0 Z0\nG1 X10. F100\nT2 M6\nG0 X0\nS9000\nG1 X5.\nX6.\nM30\n");
 }
 
 TEST(SpindleSpeeds, StayWhereNoCutAsksForAnother) {
@@ -71,11 +70,11 @@ TEST(SpindleSpeeds, OfKlartextStandInToolCall) {
 }
 
 TEST(SpindleSpeeds, OfSinumerikNameTheirSpindle) {
-  const Read r = read_siemens("T1 M6\nS1=9000 M3\nG0 X0 Y0 Z0\nG1 X10 F100\nS=4000\nG1 X20\nS500\nG1 X30\nM30\n");
+  const Read r = read_text("T1 M6\nS1=9000 M3\nG0 X0 Y0 Z0\nG1 X10 F100\nS=4000\nG1 X20\nS500\nG1 X30\nM30\n",
+                           {.inch = false}, "p.mpf");
   const SpeedEmission e = with_speeds(r, {{1, 9000, 8270}, {1, 4000, 3000}, {1, 500, 510}});
   EXPECT_EQ(e.why_not, "");
-  EXPECT_EQ(e.emission.text,
-            "T1 M6\nS1=8270 M3\nG0 X0 Y0 Z0\nG1 X10 F100\nS=3000\nG1 X20\nS510\nG1 X30\nM30\n");
+  EXPECT_EQ(e.emission.text, "T1 M6\nS1=8270 M3\nG0 X0 Y0 Z0\nG1 X10 F100\nS=3000\nG1 X20\nS510\nG1 X30\nM30\n");
 }
 
 }  // namespace
