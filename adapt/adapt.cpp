@@ -6,6 +6,7 @@
 
 #include "adapt/adapter.h"
 #include "adapt/feed_brackets.h"
+#include "simulate/chatter.h"
 #include "simulate/verdict.h"
 
 namespace camber::adapt {
@@ -24,7 +25,12 @@ std::vector<LoadLimit> scaled(std::span<const LoadLimit> limits, double factor) 
 
 AdaptResult Adapter::run() {
   AdaptResult out;
-  observe_given(out);
+  if (!by_load()) {
+    keep_feeds(out);
+    finish(out);
+    return out;
+  }
+  observe_given();
   check_limits();
   progress("choosing feeds", 0);
   chooser_.emplace(job_, given(), *cells_);
@@ -35,7 +41,7 @@ AdaptResult Adapter::run() {
   return out;
 }
 
-void Adapter::observe_given(AdaptResult& out) {
+void Adapter::observe_given() {
   const nc::MoveMap itself;
   const auto show = simulate::progress_of(options_.progress, "loads as programmed");
   machine::Job rigid = job_;
@@ -55,9 +61,18 @@ void Adapter::observe_given(AdaptResult& out) {
   }
   before_ = loads_;
   peaks_before_ = peaks_of(loads_, limits_);
-  out.time_before_s = given().feed.time_s;
-  out.cutting_time_before_s = given().feed.cutting_time_s;
-  out.blocks_before = given().text().source.line_count();
+}
+
+/// Where chatter is the only limit: speeds are changed, and feeds with them, but no feed by load.
+void Adapter::keep_feeds(AdaptResult& out) {
+  chooser_.emplace(job_, given(), *cells_);
+  std::vector<double> feeds;
+  for (const Cell& c : cells_->cells()) feeds.push_back(c.feed_mm_per_s);
+  best_ = chooser_->with(std::move(feeds));
+  predict(*best_, out.doubts);
+  best_chatter_ = std::move(chatter_);
+  out.good = true;
+  out.in_time = !options_.time_limit_s || best_->program.feed.time_s <= *options_.time_limit_s;
 }
 
 std::vector<double> Adapter::allowed(double factor) const {
@@ -102,7 +117,10 @@ ObservedLoads Adapter::predict(const Candidate& candidate, std::vector<std::stri
     p.holes = loads.holes;
     p.holes.surface_mm2 = 1;  // the surface is not judged
   }
+  if (settings_.limits.chatter_margin)
+    chatter_ = by_surface_ ? p.chatter : simulate::find_chatter(job_, candidate.program, p.cut.loads);
   doubts = simulate::doubts(job_, candidate.program, p);
+  if (!by_load()) return {};
   return observe({job_, candidate.program, candidate.map, p.cut.loads, p.surface}, *cells_, loads_);
 }
 
@@ -130,6 +148,7 @@ void Adapter::correct(AdaptResult& out) {
       best_excess = excess;
       best_ = candidate;
       best_loads_ = loads;
+      best_chatter_ = chatter_;
       verdict_ = std::move(verdict);
       out.doubts = std::move(doubts);
     }

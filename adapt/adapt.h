@@ -8,6 +8,7 @@
 
 #include "adapt/feed_chooser.h"
 #include "adapt/load.h"
+#include "adapt/speed_change.h"
 #include "base/diagnostics.h"
 #include "machine/job.h"
 #include "simulate/setup.h"
@@ -81,8 +82,10 @@ struct AdaptResult {
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   double constant_feed_mm_per_s = 0, constant_time_s = 0;  ///< see SweepRow, for the limits
   double constant_milling_time_s = 0;
-  int predictions = 0;          ///< number of predictions of the emitted program
-  std::vector<SweepRow> sweep;  ///< ascending factor
+  int predictions = 0;              ///< number of predictions of the emitted program
+  double chatter_limit = 0;         ///< greatest margin; 0: no limit
+  std::vector<SpeedChange> speeds;  ///< with it: each tool at each speed, in the order of the path
+  std::vector<SweepRow> sweep;      ///< ascending factor
   PathTrace trace;
 };
 

@@ -24,7 +24,10 @@ class Adapter {
  private:
   static constexpr double kAim = 0.97;  ///< aimed-at fraction of a limit: between kUnderLimit and kOverLimit
 
-  const simulate::SimulatedProgram& given() const { return setup_ ? setup_->program : *program_; }
+  /// With the spindle speeds that the limit on chatter asks for.
+  const simulate::SimulatedProgram& given() const { return stable_ ? *stable_ : original(); }
+  const simulate::SimulatedProgram& original() const { return setup_ ? setup_->program : *program_; }
+  bool by_load() const { return !limits_.empty(); }
   const removal::Stock& blank() const { return setup_ ? setup_->target.blank : blank_->stock; }
   void progress(const std::string& what, double fraction) const {
     if (options_.progress) options_.progress(what, fraction);
@@ -35,14 +38,16 @@ class Adapter {
   void set_up();
   void check_cells();
   void check_limits();
+  void change_speeds();
 
   // adapt.cpp
-  void observe_given(AdaptResult& out);
+  void observe_given();
   std::vector<double> allowed(double factor) const;
   std::shared_ptr<Candidate> choose(double factor, int rounds) const;
   void find_time_limit(AdaptResult& out);
   ObservedLoads predict(const Candidate& candidate, std::vector<std::string>& doubts);
   void correct(AdaptResult& out);
+  void keep_feeds(AdaptResult& out);
   bool can_be_raised(const Candidate& candidate, std::span<const double> now) const;
   void lower_feeds(const Verdict& verdict, std::span<const double> now, std::vector<double>& feeds) const;
 
@@ -51,10 +56,12 @@ class Adapter {
   void check_emitted();
   double constant_feed(double factor) const;
   void sweep(AdaptResult& out);
+  std::vector<std::uint32_t> original_blocks() const;
+  void finish_speeds(AdaptResult& out) const;
   void finish(AdaptResult& out);
   void trace(PathTrace& out) const;
 
-  const machine::Job& job_;
+  machine::Job job_;  ///< its operations are those of given()
   const machine::AdaptSettings& settings_;
   Diagnostics& diagnostics_;
   const AdaptOptions& options_;
@@ -63,6 +70,9 @@ class Adapter {
   std::optional<simulate::Setup> setup_;               ///< where the surface counts or another program is the target
   std::optional<simulate::SimulatedProgram> program_;  ///< else
   std::optional<simulate::Blank> blank_;               ///< else
+  std::vector<SpeedChange> speeds_;
+  std::optional<simulate::SimulatedProgram> stable_;  ///< with other spindle speeds, where there are any
+  std::vector<std::uint32_t> stable_blocks_;          ///< of its lines in the original
   std::optional<FeedCells> cells_;
   std::vector<int> flutes_;  ///< by cell
   std::optional<FeedChooser> chooser_;
@@ -71,6 +81,7 @@ class Adapter {
   std::vector<double> peaks_before_;  ///< by limit
   std::shared_ptr<Candidate> best_;
   Verdict verdict_;
+  simulate::ChatterMargins chatter_, best_chatter_;
   int predictions_ = 0;
 };
 

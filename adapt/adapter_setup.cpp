@@ -12,6 +12,7 @@
 #include "checks/plausibility.h"
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
+#include "simulate/operations.h"
 #include "simulate/region.h"
 
 namespace camber::adapt {
@@ -41,7 +42,7 @@ std::vector<double> cell_lengths(const machine::Job& job, const simulate::Simula
   return out;
 }
 
-/// Thickest chip of the highest feed.
+/// Thickest chip of the highest feed, or of the programmed ones.
 double thickest_chip_mm(const machine::Job& job, const simulate::SimulatedProgram& program) {
   double out = 0;
   for (std::size_t m = 0; m < program.selected.size(); ++m) {
@@ -49,7 +50,9 @@ double thickest_chip_mm(const machine::Job& job, const simulate::SimulatedProgra
     const auto& state = program.moves_in_part().state_of(program.moves_in_part().moves[m]);
     const auto tool = job.tools.find(state.tool);
     if (tool == job.tools.end() || state.spindle_speed_rpm <= 0) continue;
-    out = std::max(out, job.adapt->highest_feed_mm_per_s * 60 / (state.spindle_speed_rpm * tool->second.flutes));
+    const double highest = job.adapt->highest_feed_mm_per_s;
+    const double feed = highest > 0 ? highest : program.moves_in_part().moves[m].feed_mm_per_s;
+    out = std::max(out, feed * 60 / (state.spindle_speed_rpm * tool->second.flutes));
   }
   return out;
 }
@@ -58,12 +61,13 @@ double thickest_chip_mm(const machine::Job& job, const simulate::SimulatedProgra
 
 Adapter::Adapter(const machine::Job& job, Diagnostics& diagnostics, const AdaptOptions& options)
     : job_(job),
-      settings_(*job.adapt),
+      settings_(*job_.adapt),
       diagnostics_(diagnostics),
       options_(options),
       limits_(limits_of(settings_.limits)) {
   for (const LoadLimit& l : limits_) by_surface_ = by_surface_ || l.load == Load::form_error;
   set_up();
+  if (settings_.limits.chatter_margin) change_speeds();
   cells_.emplace(given(), cell_lengths(job_, given()));
   check_cells();
   for (const Cell& c : cells_->cells()) {
@@ -89,6 +93,22 @@ void Adapter::set_up() {
   diagnostics_.throw_if_errors();
 }
 
+/// Stable speeds come before feeds by load.
+void Adapter::change_speeds() {
+  const auto loads =
+      simulate::predict_loads(job_, blank(), original(),
+                              {.coupling = job_.simulation.coupling,
+                               .progress = simulate::progress_of(options_.progress, "chatter as programmed")});
+  speeds_ = find_speed_changes(job_, original(), loads.cut.loads);
+  SpeedText changed = emit_speed_changes(job_, original(), speeds_);
+  if (changed.text.empty()) return;
+  job_.operations = simulate::moved_ranges(
+      simulate::as_lines(job_.operations, original().text(), original().moves_in_part()), changed.block_of_line);
+  Diagnostics repeated;  // those of the given program
+  stable_.emplace(simulate::simulate_motion(SourceText(job_.program, changed.text), job_, {}, repeated));
+  stable_blocks_ = std::move(changed.block_of_line);
+}
+
 Diagnostic Adapter::at_line(Severity severity, std::size_t block, std::string message, std::string check) const {
   return given().text().source.diagnostic(severity, given().text().blocks[block].offset, std::move(message),
                                           std::move(check));
@@ -96,6 +116,7 @@ Diagnostic Adapter::at_line(Severity severity, std::size_t block, std::string me
 
 /// Says which feeds are not changed. Errors [nothing-to-adapt] where that is all of them.
 void Adapter::check_cells() {
+  if (!by_load()) return;
   bool any = false;
   std::map<Kept, std::set<std::size_t>> lines;
   for (const Cell& c : cells_->cells()) {

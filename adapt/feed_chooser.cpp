@@ -19,15 +19,18 @@ constexpr double kWiden_mm = 0.3;      // first widening of a slow passage
 constexpr double kMaxWiden_mm = 6;
 constexpr int kWidenRounds = 5;  // then passages are lowered
 
-FeedBounds bounds_of(const machine::Job& job) {
+FeedBounds bounds_of(const machine::Job& job, const FeedCells& cells) {
   const machine::AdaptSettings& s = *job.adapt;
   const double block_time = job.machine.control.block_time_s;
   constexpr double kBlockTimes = 1.5;  // of margin
+  double fastest = s.highest_feed_mm_per_s;
+  if (fastest <= 0)  // not given: feeds stay as they are
+    for (const Cell& c : cells.cells()) fastest = std::max(fastest, c.feed_mm_per_s);
   return {.lowest_mm_per_s = s.lowest_feed_mm_per_s,
-          .highest_mm_per_s = s.highest_feed_mm_per_s,
+          .highest_mm_per_s = fastest,
           .step_fraction = s.step_fraction,
           .change_s = kChange_s + 2 * block_time,
-          .min_length_mm = std::max(kMinLength_mm, kBlockTimes * block_time * s.highest_feed_mm_per_s)};
+          .min_length_mm = std::max(kMinLength_mm, kBlockTimes * block_time * fastest)};
 }
 
 }  // namespace
@@ -41,7 +44,7 @@ double milling_time_s(const simulate::SimulatedProgram& program) {
 }
 
 FeedChooser::FeedChooser(const machine::Job& job, const simulate::SimulatedProgram& given, const FeedCells& cells)
-    : job_(job), given_(given), cells_(cells), bounds_(bounds_of(job)) {
+    : job_(job), given_(given), cells_(cells), bounds_(bounds_of(job, cells)) {
   for (const Cell& c : cells.cells()) {
     const auto tool = job.tools.find(given.moves_in_part().state_of(given.moves_in_part().moves[c.move]).tool);
     radius_mm_.push_back(tool == job.tools.end() ? 0 : tool->second.diameter_mm / 2);

@@ -37,6 +37,21 @@ AdaptResult result_of(const adapt::AdaptResult& r) {
     out.over_limit.push_back({o.line, o.new_line, std::string(text.key), text.scale * o.value,
                               mm_per_min_from_mm_per_s(o.feed_mm_per_s), std::string(adapt::to_string(o.reason))});
   }
+  for (const adapt::SpeedChange& c : r.speeds)
+    out.speeds.push_back({.tool = c.tool,
+                          .speed_before_rpm = c.before_rpm,
+                          .speed_after_rpm = c.after_rpm,
+                          .margin_before = c.margin_before,
+                          .margin_after = c.margin_after,
+                          .line = c.line,
+                          .new_line = c.new_line,
+                          .chatter_hz = c.chatter_hz,
+                          .kept_depth_mm = c.kept_depth_mm,
+                          .stable_speed_rpm = c.advised_rpm,
+                          .probability = c.probability,
+                          .modes_given = c.measured,
+                          .kept = c.kept,
+                          .reason = c.reason});
   for (const adapt::SweepRow& row : r.sweep)
     out.sweep.push_back(
         {row.factor, row.time_s, mm_per_min_from_mm_per_s(row.constant_feed_mm_per_s), row.constant_time_s});

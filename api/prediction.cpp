@@ -18,6 +18,7 @@
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "machine/assumptions.h"
+#include "report/chatter_page.h"
 #include "report/feature_results.h"
 #include "report/forces_at_csv.h"
 #include "report/forces_csv.h"
@@ -321,6 +322,7 @@ void finish_result(const FinishedPrediction& done, const PredictOptions& options
   result.json = machine::with_assumptions(report::with_features(std::move(json), {{"features", features}}), assumed);
   result.printed = machine::assumptions_text(assumed) + report::predict_text(program, prediction, compute_s, traced) +
                    report::features_text(features);
+  if (options.explain) result.printed += report::chatter_explanation(done.job, prediction.chatter);
   result.diagnostics = found.all();
   if (!options.stock.empty()) prediction.machined->save(options.stock);
   if (options.output_folder.empty()) return;

@@ -186,9 +186,12 @@ void add_predict_command(CLI::App& app, const GlobalOptions& options, Action& ch
   auto* meshes = command->add_flag("--meshes", arguments->options.meshes,
                                    "also write machined.stl and machined.ply, the machined part, and "
                                    "form_error_mesh.ply, its surface with the form error in colours");
+  auto* explain = command->add_flag("--explain", arguments->options.explain,
+                                    "also how uncertain the margins of chatter are: modes, their errors, and what each "
+                                    "does to the margin");
   auto parts = std::make_shared<SectionOptions>();
   add_section_options(*command, *parts, *trace);
-  command->get_option("--sections")->excludes(meshes);
+  command->get_option("--sections")->excludes(meshes)->excludes(explain);
   command->callback([arguments, parts, command, &options, &chosen] {
     const bool in_sections = command->count("--sections") > 0, one = command->count("--section") > 0;
     if (one != (command->count("--stage") > 0)) throw CLI::RequiredError(one ? "--stage" : "--section");

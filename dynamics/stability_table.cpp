@@ -107,6 +107,17 @@ CriticalDepth StabilityTable::exactly_at(const ArcCut& c) const {
   return ZeroOrderLobes(modes_, cut).at(speed_rpm_);
 }
 
+CriticalDepth StabilityTable::with_modes_times(const ModeErrors& f, const ArcCut& c) const {
+  std::vector<Mode> modes = modes_;
+  for (Mode& m : modes)
+    m.frequency_hz *= f.frequency, m.damping_ratio *= f.damping, m.stiffness_N_per_mm *= f.stiffness;
+  return StabilityTable(std::move(modes), tool_, speed_rpm_, errors_).exactly_at(c);
+}
+
+CriticalDepth StabilityTable::zero_order_at(const ArcCut& c) const {
+  return c.arc_rad > 0 ? ZeroOrderLobes(modes_, cut_with(c)).at(speed_rpm_) : CriticalDepth{};
+}
+
 std::vector<CriticalDepth> StabilityTable::at_speeds(const ArcCut& c, const std::vector<double>& speeds_rpm) const {
   const Cut cut = cut_with(c);
   const ZeroOrderLobes lobes(modes_, cut);

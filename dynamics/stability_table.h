@@ -41,6 +41,8 @@ class StabilityTable {
 
   /// The exact one, of the same method.
   CriticalDepth exactly_at(const ArcCut& cut) const;
+  /// Of zero order, whatever the cut.
+  CriticalDepth zero_order_at(const ArcCut& cut) const;
   /// Critical depths at other speeds: by semi-discretisation where the cut is short or the teeth unequal, else of
   /// zero order.
   std::vector<CriticalDepth> at_speeds(const ArcCut& cut, const std::vector<double>& speeds_rpm) const;
@@ -49,6 +51,11 @@ class StabilityTable {
   /// order, with a drawn process damping: it adds to the damping of the mode that is heard, and the critical depth
   /// grows with that.
   double probability(const ArcCut& cut, double depth_mm) const;
+  /// The critical depths of these draws, ascending.
+  std::vector<double> drawn_depths(const ArcCut& cut) const;
+  /// The critical depth with frequency, damping and stiffness of all modes times these factors, by the method of
+  /// exactly_at.
+  CriticalDepth with_modes_times(const ModeErrors& factors, const ArcCut& cut) const;
   /// The depth of this probability, of the node next to the cut.
   double depth_of_probability(const ArcCut& cut, double probability);
   static constexpr int kDraws = 100;
@@ -68,7 +75,6 @@ class StabilityTable {
   Cut cut_with(const ArcCut& cut) const;
   bool needs_semi_discretisation(const ArcCut& cut) const;
   bool short_or_unequal(const ArcCut& cut) const;
-  std::vector<double> drawn_depths(const ArcCut& cut) const;
 
   std::vector<Mode> modes_;
   Cut tool_;

@@ -13,6 +13,7 @@ inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static
 inline constexpr std::array<std::string_view, 2> kReferenceWords{"commanded", "machine"};
 inline constexpr std::array<std::string_view, 2> kGoalWords{"best", "tolerance"};
 inline constexpr std::array<std::string_view, 3> kLeverWords{"shift", "feed", "passes"};
+inline constexpr std::array<std::string_view, 2> kAdaptLeverWords{"feed", "speed"};
 inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};
 inline constexpr std::array<std::string_view, 2> kDirectionWords{"x", "y"};
@@ -114,7 +115,9 @@ struct LimitKey {
   std::string_view key;
   std::optional<double> AdaptLimits::*field;
   FileUnit unit = kAsIs;
+  NumberRange range = kPositive;
 };
+inline constexpr NumberRange kMarginRange{.min = 0, .max = 1, .above_min = true};
 inline constexpr std::array kLimitKeys{
     LimitKey{"force_N", &AdaptLimits::force_N},
     LimitKey{"torque_Nm", &AdaptLimits::torque_Nmm, kNewtonMetres},
@@ -123,6 +126,7 @@ inline constexpr std::array kLimitKeys{
     LimitKey{"chip_mm", &AdaptLimits::chip_mm},
     LimitKey{"power_W", &AdaptLimits::power_W},
     LimitKey{"chip_min_mm", &AdaptLimits::chip_min_mm},
+    LimitKey{"chatter_margin", &AdaptLimits::chatter_margin, kAsIs, kMarginRange},
 };
 inline constexpr std::array kAdaptKeys{
     NumberKey<AdaptSettings>{"step_percent", &AdaptSettings::step_fraction, kStepPercent, kAsPercent},

@@ -189,19 +189,21 @@ void read_compensation(TomlTable table, const std::map<int, Tool>& tools, Compen
   table.finish();
 }
 
-void read_limits(TomlTable table, AdaptLimits& limits) {
+/// Returns whether a limit bounds the feed from above.
+bool read_limits(TomlTable table, AdaptLimits& limits) {
   bool bounded = false;
   for (const LimitKey& k : kLimitKeys) {
-    const auto value = table.optional_number(k.key, kPositive);
+    const auto value = table.optional_number(k.key, k.range);
     if (!value) continue;
     limits.*k.field = k.unit.inside_from_file(*value);
-    bounded = bounded || k.key != "chip_min_mm";
+    bounded = bounded || (k.key != "chip_min_mm" && k.key != "chatter_margin");
   }
-  if (!bounded)
+  const bool by_speed_alone = table.has("chatter_margin") && !limits.chip_min_mm;
+  if (!bounded && !by_speed_alone)
     table.error_at(
         "",
         "limits has no load that bounds the feed from above; at least one of force_N, torque_Nm, deflection_um, "
-        "form_error_um, chip_mm and power_W was expected",
+        "form_error_um, chip_mm and power_W was expected, or chatter_margin alone",
         "limits-missing");
   if (limits.chip_min_mm && limits.chip_mm && *limits.chip_min_mm >= *limits.chip_mm)
     table.error_at("chip_min_mm",
@@ -209,6 +211,51 @@ void read_limits(TomlTable table, AdaptLimits& limits) {
                                *limits.chip_min_mm, *limits.chip_mm),
                    "value-range");
   table.finish();
+  return bounded;
+}
+
+void read_adapt_levers(TomlTable& table, AdaptSettings& adapt) {
+  constexpr std::string_view kWanted = "a list of \"feed\" and \"speed\"";
+  const auto names = table.text_list("levers", kWanted);
+  if (!names) return;
+  adapt.levers.clear();
+  for (const std::string& name : *names) {
+    const auto word = std::ranges::find(kAdaptLeverWords, name);
+    if (word == kAdaptLeverWords.end())
+      table.error_at("levers", fmt::format("levers names \"{}\"; {} was expected", name, kWanted), "value-choice");
+    else if (const auto lever = static_cast<AdaptLever>(word - kAdaptLeverWords.begin()); !adapt.has(lever))
+      adapt.levers.push_back(lever);
+  }
+  if (names->empty())
+    table.error_at("levers", fmt::format("levers is empty; {} was expected", kWanted), "value-choice");
+  if (!names->empty() && adapt.bounds_feed && !adapt.has(AdaptLever::feed))
+    table.error_at("levers",
+                   "levers does not name \"feed\", by which alone a load is kept within limits; [\"feed\", \"speed\"] "
+                   "or chatter_margin as the only limit was expected",
+                   "value-choice");
+  if (adapt.has(AdaptLever::speed) && table.has("limits") && !adapt.limits.chatter_margin)
+    table.error_at("levers",
+                   "levers names \"speed\", but limits has no chatter_margin, by which speeds are chosen; limits = { "
+                   "chatter_margin = 0.8 } was expected",
+                   "value-choice");
+}
+
+void read_spindle_speeds(TomlTable& table, AdaptSettings& adapt) {
+  constexpr std::string_view kWanted = "[lowest, highest], the spindle speeds that may be used,";
+  const auto speeds = table.numbers("spindle_rpm", 2, kPositive, kWanted);
+  if (!speeds) return;
+  adapt.spindle_rpm = {(*speeds)[0], (*speeds)[1]};
+  if ((*speeds)[0] >= (*speeds)[1])
+    table.error_at("spindle_rpm",
+                   fmt::format("spindle_rpm = [{:g}, {:g}]: the lowest speed is not below the highest; [lowest, "
+                               "highest] was expected",
+                               (*speeds)[0], (*speeds)[1]),
+                   "value-range");
+  if (!adapt.has(AdaptLever::speed))
+    table.error_at_name("spindle_rpm",
+                        "[adapt] has spindle_rpm, but levers does not name \"speed\"; levers = [\"feed\", \"speed\"] "
+                        "was expected",
+                        "value-choice");
 }
 
 AdaptSettings read_adapt(TomlTable table) {
@@ -216,13 +263,16 @@ AdaptSettings read_adapt(TomlTable table) {
   read_numbers<AdaptSettings>(table, kAdaptKeys, out);
   if (table.has("limits")) {
     out.limits_place = table.place_of("limits");
-    if (auto limits = table.table("limits")) read_limits(*limits, out.limits);
+    if (auto limits = table.table("limits")) out.bounds_feed = read_limits(*limits, out.limits);
   } else {
     table.missing("limits", "a table such as { force_N = 150.0 }");
   }
+  read_adapt_levers(table, out);
+  read_spindle_speeds(table, out);
   constexpr std::string_view kWanted = "[lowest, highest], the feeds that may be used,";
   if (!table.has("feed_mm_per_min")) {
-    table.missing("feed_mm_per_min", "[lowest, highest], such as [300, 3000]");
+    if (out.bounds_feed || !out.limits.chatter_margin)
+      table.missing("feed_mm_per_min", "[lowest, highest], such as [300, 3000]");
   } else if (const auto feeds = table.numbers("feed_mm_per_min", 2, kPositive, kWanted)) {
     out.lowest_feed_mm_per_s = mm_per_s_from_mm_per_min((*feeds)[0]);
     out.highest_feed_mm_per_s = mm_per_s_from_mm_per_min((*feeds)[1]);

@@ -105,10 +105,17 @@ std::string adapt_text(const AdaptSettings& a) {
   for (const LimitKey& k : kLimitKeys)
     if (const auto& value = a.limits.*k.field)
       limits += fmt::format("{}{} = {}", limits.empty() ? "" : ", ", k.key, toml_number(*value, k.unit));
-  return fmt::format("\n[adapt]\nlimits = {{ {} }}\nfeed_mm_per_min = [{}, {}]\n", limits,
-                     toml_number(a.lowest_feed_mm_per_s, kPerMinute),
-                     toml_number(a.highest_feed_mm_per_s, kPerMinute)) +
-         toml_lines<AdaptSettings>(kAdaptKeys, a);
+  std::string out = fmt::format("\n[adapt]\nlimits = {{ {} }}\n", limits);
+  if (a.levers != AdaptSettings{}.levers) {
+    std::vector<std::string_view> levers;
+    for (const AdaptLever lever : a.levers) levers.push_back(kAdaptLeverWords[static_cast<std::size_t>(lever)]);
+    out += fmt::format("levers = [\"{}\"]\n", fmt::join(levers, "\", \""));
+  }
+  if (a.highest_feed_mm_per_s > 0)
+    out += fmt::format("feed_mm_per_min = [{}, {}]\n", toml_number(a.lowest_feed_mm_per_s, kPerMinute),
+                       toml_number(a.highest_feed_mm_per_s, kPerMinute));
+  if (a.spindle_rpm) out += fmt::format("spindle_rpm = [{}, {}]\n", (*a.spindle_rpm)[0], (*a.spindle_rpm)[1]);
+  return out + toml_lines<AdaptSettings>(kAdaptKeys, a);
 }
 
 std::string box_text(const Box& box) { return fmt::format("[{}, {}]", point_text(box.min_mm), point_text(box.max_mm)); }

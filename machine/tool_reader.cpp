@@ -140,6 +140,18 @@ void check_overhang(TomlTable& table, const Tool& tool) {
         "tool-shape");
 }
 
+void warn_of_one_direction(TomlTable& table, const std::vector<Mode>& modes) {
+  const auto along_x = [](const Mode& m) { return m.direction.x() != 0; };
+  const auto count = std::ranges::count_if(modes, along_x), all = static_cast<std::ptrdiff_t>(modes.size());
+  if (count > 0 && count < all) return;
+  if (modes.empty()) return;
+  table.warning_at("mode",
+                   fmt::format("all modes are along {}, so that the tool counts as rigid along {}; modes of both "
+                               "directions were expected (fit-modes --direction xy where it is alike in both)",
+                               count > 0 ? "x" : "y", count > 0 ? "y" : "x"),
+                   "mode-direction");
+}
+
 }  // namespace
 
 Tool read_tool(TomlTable table, int number) {
@@ -160,6 +172,7 @@ Tool read_tool(TomlTable table, int number) {
   read_holder(table, tool);
   if (tool.flutes > 0) read_teeth(table, tool);
   tool.modes = read_modes(table);
+  warn_of_one_direction(table, tool.modes);
   check_overhang(table, tool);
   take_typical_values(table, tool);
   table.ignore("assumed");  // assumptions.h

@@ -402,6 +402,22 @@ void add_adapt(py::module_& module) {
       .def_readonly("time_s", &LimitSweepRow::time_s)
       .def_readonly("constant_feed_mm_per_min", &LimitSweepRow::constant_feed_mm_per_min)
       .def_readonly("constant_time_s", &LimitSweepRow::constant_time_s);
+  using camber::AdaptedSpeed;
+  py::class_<AdaptedSpeed>(module, "AdaptedSpeed")
+      .def_readonly("tool", &AdaptedSpeed::tool)
+      .def_readonly("speed_before_rpm", &AdaptedSpeed::speed_before_rpm)
+      .def_readonly("speed_after_rpm", &AdaptedSpeed::speed_after_rpm)
+      .def_readonly("margin_before", &AdaptedSpeed::margin_before)
+      .def_readonly("margin_after", &AdaptedSpeed::margin_after)
+      .def_readonly("line", &AdaptedSpeed::line)
+      .def_readonly("new_line", &AdaptedSpeed::new_line)
+      .def_readonly("chatter_Hz", &AdaptedSpeed::chatter_hz)
+      .def_readonly("kept_depth_mm", &AdaptedSpeed::kept_depth_mm)
+      .def_readonly("stable_speed_rpm", &AdaptedSpeed::stable_speed_rpm)
+      .def_readonly("probability", &AdaptedSpeed::probability)
+      .def_readonly("modes_given", &AdaptedSpeed::modes_given)
+      .def_readonly("kept", &AdaptedSpeed::kept)
+      .def_readonly("reason", &AdaptedSpeed::reason);
   result_class<AdaptResult>(module, "AdaptResult")
       .def_readonly("program", &AdaptResult::program)
       .def_readonly("success", &AdaptResult::success)
@@ -415,6 +431,7 @@ void add_adapt(py::module_& module) {
       .def_readonly("blocks_changed", &AdaptResult::blocks_changed)
       .def_readonly("loads", &AdaptResult::loads)
       .def_readonly("over_limit", &AdaptResult::over_limit)
+      .def_readonly("speeds", &AdaptResult::speeds)
       .def_readonly("sweep", &AdaptResult::sweep)
       .def_readonly("limit_factor", &AdaptResult::limit_factor);
 }

@@ -204,6 +204,22 @@ TextTable over_table(const AdaptResult& r) {
   return table;
 }
 
+TextTable speed_table(const AdaptResult& r) {
+  TextTable table{
+      fmt::format("Margin of chatter, at most {:g}", r.chatter_limit),
+      {"tool", "S before", "S after", "margin before", "line", "margin after", "sound, Hz", "probability, %", "modes"},
+      {},
+      "Depth over critical depth, the worst tooth passing of each tool and speed. Where S changes, F "
+      "changes with it, so that the chip stays."};
+  for (const adapt::SpeedChange& c : r.speeds)
+    table.rows.push_back({fmt::format("T{}", c.tool), fmt::format("{:.0f}", c.before_rpm),
+                          fmt::format("{:.0f}", c.after_rpm), fmt::format("{:.2f}", c.margin_before),
+                          std::to_string(c.line), fmt::format("{:.2f}", c.margin_after),
+                          fmt::format("{:.0f}", c.chatter_hz), fmt::format("{:.0f}", 100 * c.probability),
+                          c.measured ? "given" : "beam, usual damping"});
+  return table;
+}
+
 std::vector<Figure> figures_of(const AdaptResult& r) {
   std::vector<Figure> out{{"time", r.time_before_s, r.time_after_s, "s", 1, "time_{}_s"},
                           {"cutting", r.cutting_time_before_s, r.cutting_time_after_s, "s", 1, "cutting_time_{}_s"}};
@@ -223,15 +239,17 @@ std::string adapt_page(const AdaptResult& r, const machine::AdaptSettings& asked
                        const std::vector<std::string>& warnings) {
   ReportData data;
   data.figures = figures_of(r);
-  std::string out = page_head("Feeds of " + files.program,
-                              fmt::format("{}: {} to {}, feeds from {:g} to {:g} mm/min", files.job, files.program,
-                                          files.output, mm_per_min_from_mm_per_s(asked.lowest_feed_mm_per_s),
-                                          mm_per_min_from_mm_per_s(asked.highest_feed_mm_per_s)));
+  std::string intro = fmt::format("{}: {} to {}", files.job, files.program, files.output);
+  if (asked.highest_feed_mm_per_s > 0)
+    intro += fmt::format(", feeds from {:g} to {:g} mm/min", mm_per_min_from_mm_per_s(asked.lowest_feed_mm_per_s),
+                         mm_per_min_from_mm_per_s(asked.highest_feed_mm_per_s));
+  std::string out = page_head("Feeds of " + files.program, intro);
   out += tiles_html(data) + list_html("Not reached", "warnings", adapt_failures(r)) +
          list_html("Warnings", "warnings", warnings) + feed_card(r.trace);
   for (std::size_t row = 0; row < r.trace.load_before.size() && !r.trace.along_mm.empty(); ++row)
     out += load_card(r, row);
   out += sweep_card(r) + "<div class=\"columns\">\n" + figures_html(data);
+  if (!r.speeds.empty()) out += table_html(speed_table(r));
   if (!r.over.empty()) out += table_html(over_table(r));
   std::vector<std::string> notes;
   if (r.constant_feed_mm_per_s > 0)

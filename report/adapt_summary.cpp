@@ -51,6 +51,53 @@ Json sweep_json(const AdaptResult& r) {
   return out;
 }
 
+Json or_null(double value) { return value > 0 ? Json(value) : Json(nullptr); }
+
+Json chatter_json(const AdaptResult& r) {
+  Json rows = Json::array();
+  for (const adapt::SpeedChange& c : r.speeds)
+    rows.push_back({{"tool", c.tool},
+                    {"modes", c.measured ? "given" : "beam"},
+                    {"speed_before_rpm", c.before_rpm},
+                    {"speed_after_rpm", c.after_rpm},
+                    {"margin_before", c.margin_before},
+                    {"margin_after", c.margin_after},
+                    {"line", c.line},
+                    {"new_line", c.new_line},
+                    {"chatter_Hz", c.chatter_hz},
+                    {"depth_mm", c.depth_mm},
+                    {"kept_depth_mm", c.kept_depth_mm},
+                    {"stable_speed_rpm", or_null(c.advised_rpm)},
+                    {"best_speed_rpm", or_null(c.best_rpm)},
+                    {"best_speed_depth_mm", or_null(c.best_depth_mm)},
+                    {"probability", c.probability},
+                    {"kept", c.kept},
+                    {"reason", c.reason}});
+  const bool kept = std::ranges::all_of(r.speeds, &adapt::SpeedChange::kept);
+  return {{"limit", r.chatter_limit}, {"kept", kept}, {"operations", std::move(rows)}};
+}
+
+std::string chatter_rows(const AdaptResult& r) {
+  if (r.chatter_limit <= 0) return {};
+  std::string out = fmt::format("margin of chatter, at most {:g}:\n", r.chatter_limit);
+  for (const adapt::SpeedChange& c : r.speeds)
+    out += fmt::format("  T{}: {}; probability {:.0f} %, {}\n", c.tool, speed_change_text(c), 100 * c.probability,
+                       c.measured ? "modes of the job" : "beam's modes, usual damping");
+  return out;
+}
+
+/// What would keep the limit.
+std::string cure_of(const adapt::SpeedChange& c) {
+  std::string depth = fmt::format("an axial depth of {:.2g} mm at S{:.0f}", c.kept_depth_mm, c.before_rpm);
+  if (c.advised_rpm > 0 && c.advised_rpm != c.after_rpm)
+    return fmt::format("S{:.0f} with F {:.2f} times as high would keep it, but {}; that, or {}, was expected",
+                       c.advised_rpm, c.advised_rpm / c.before_rpm, c.reason, depth);
+  if (c.best_rpm > 0 && c.advised_rpm <= 0)
+    return fmt::format("no speed that may be used keeps it; {}, or {:.2g} mm at S{:.0f}, was expected", depth,
+                       c.best_depth_mm, c.best_rpm);
+  return depth + " was expected";
+}
+
 /// Lines of the emitted program, without repetition.
 std::size_t blocks_over(const AdaptResult& r) {
   std::size_t out = 0, last = 0;
@@ -82,8 +129,9 @@ std::string adapt_json(const AdaptResult& r, const machine::AdaptSettings& asked
   j["constant_feed"] = {{"feed_mm_per_min", mm_per_min_from_mm_per_s(r.constant_feed_mm_per_s)},
                         {"time_s", r.constant_time_s},
                         {"milling_time_s", r.constant_milling_time_s}};
-  j["feed_mm_per_min"] = {{"lowest", mm_per_min_from_mm_per_s(asked.lowest_feed_mm_per_s)},
-                          {"highest", mm_per_min_from_mm_per_s(asked.highest_feed_mm_per_s)}};
+  if (asked.highest_feed_mm_per_s > 0)
+    j["feed_mm_per_min"] = {{"lowest", mm_per_min_from_mm_per_s(asked.lowest_feed_mm_per_s)},
+                            {"highest", mm_per_min_from_mm_per_s(asked.highest_feed_mm_per_s)}};
   j["blocks"] = {{"before", r.blocks_before}, {"after", r.blocks_after}, {"changed", r.blocks_changed}};
   j["loads"] = loads_json(r);
   j["over_limit_blocks"] = blocks_over(r);
@@ -92,21 +140,32 @@ std::string adapt_json(const AdaptResult& r, const machine::AdaptSettings& asked
   j["within_time"] = r.in_time;
   j["limit_factor"] = r.limit_factor;
   j["predictions"] = r.predictions;
+  if (r.chatter_limit > 0) j["chatter"] = chatter_json(r);
   if (!r.sweep.empty()) j["sweep"] = sweep_json(r);
   j["doubts"] = r.doubts;
   j["compute_s"] = compute_s;
   return j.dump(2) + "\n";
 }
 
+std::string speed_change_text(const adapt::SpeedChange& c) {
+  const std::string before = fmt::format("{:.2f} at S{:.0f} in line {}", c.margin_before, c.before_rpm, c.line);
+  if (c.after_rpm == c.before_rpm) return before;
+  return fmt::format("{}; {:.2f} at S{:.0f} in line {} of the new program", before, c.margin_after, c.after_rpm,
+                     c.new_line);
+}
+
 std::string adapt_text(const AdaptResult& r, double compute_s) {
   constexpr std::size_t kShown = 8;
-  std::string out = fmt::format("{:<26}{:>10}{:>10}{:>10}{:>14}\n", "load", "limit", "before", "after", "elsewhere");
+  std::string out;
+  if (!r.loads.empty())
+    out = fmt::format("{:<26}{:>10}{:>10}{:>10}{:>14}\n", "load", "limit", "before", "after", "elsewhere");
   for (const adapt::LoadFigure& f : r.loads) {
     const adapt::LoadText& text = adapt::text_of(f.limit.load);
     const auto cell = [&](double v) { return fmt::format("{:.{}f}", shown(f.limit, v), text.decimals); };
     out += fmt::format("{:<26}{:>10}{:>10}{:>10}{:>14}\n", fmt::format("{}, {}", text.name, text.unit),
                        cell(f.limit.value), cell(f.max_before), cell(f.max_after), cell(f.max_elsewhere));
   }
+  out += chatter_rows(r);
   out += fmt::format("time {:.1f} s before, {:.1f} s after ({:+.1f} %)", r.time_before_s, r.time_after_s,
                      100 * (r.time_after_s / r.time_before_s - 1));
   if (r.constant_feed_mm_per_s > 0)
@@ -134,6 +193,10 @@ std::vector<std::string> adapt_failures(const AdaptResult& r) {
   std::vector<std::string> out = r.doubts;
   if (!r.in_time)
     out.push_back("no limits are high enough for the time limit: the control or the highest feed takes the time");
+  for (const adapt::SpeedChange& c : r.speeds)
+    if (!c.kept)
+      out.push_back(fmt::format("the margin of chatter of T{} exceeds chatter_margin = {:g}: {}; {}", c.tool,
+                                r.chatter_limit, speed_change_text(c), cure_of(c)));
   if (r.good) return out;
   for (const adapt::OverLimit& o : r.over)
     if (o.reason == adapt::OverReason::control) {

@@ -15,6 +15,9 @@ std::string adapt_text(const adapt::AdaptResult& result, double compute_s);
 /// Why the program is not within its limits or its time; empty: it is.
 std::vector<std::string> adapt_failures(const adapt::AdaptResult& result);
 
+/// "1.44 at S9000 in line 8 to 0.78 at S8270": the margin of chatter before and after.
+std::string speed_change_text(const adapt::SpeedChange& change);
+
 /// Files that the page names.
 struct AdaptFiles {
   std::string job, program, output;

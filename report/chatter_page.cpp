@@ -1,10 +1,12 @@
 #include "report/chatter_page.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "dynamics/tool_modes.h"
 #include "report/lobes_svg.h"
 #include "simulate/chatter.h"
 
@@ -65,6 +67,45 @@ std::string chatter_text(const simulate::ChatterMargins& margins) {
   std::string out;
   for (const ChatterOperation* o : worst)
     if (o->margin > 1) out += fmt::format("chatter: {}\n", simulate::chatter_sentence(*o));
+  return out;
+}
+
+namespace {
+
+std::string percent_or_factor(double error) {
+  return error < 0.3 ? fmt::format("{:.0f} %", 100 * error) : fmt::format("a factor of {:.1f}", std::exp(error));
+}
+
+std::string explained(const machine::Job& job, const ChatterOperation& o) {
+  std::string out = fmt::format(
+      "chatter of T{} at S{:.0f}, line {}: {:.2f} mm deep on an arc of {:.0f} deg, slopes of the force {:.0f} MPa "
+      "tangential, {:.0f} MPa radial\n",
+      o.tool, o.speed_rpm, o.line, o.depth_mm, deg_from_rad(o.arc_rad), o.kt_MPa, o.kr_MPa);
+  for (const machine::Mode& m : dynamics::modes_of(job.tools.at(o.tool)))
+    out += fmt::format("  mode along {}: {:.0f} Hz, damping {:.2g} %, {:.3g} N/um{}\n",
+                       m.direction.x() != 0 ? "x" : "y", m.frequency_hz, 100 * m.damping_ratio,
+                       m.stiffness_N_per_mm / 1000, o.measured ? "" : "; of the beam, with a usual damping");
+  for (const machine::Mode& m : job.workpiece_modes)
+    out += fmt::format("  mode of the work along {}: {:.0f} Hz, damping {:.2g} %, {:.3g} N/um\n",
+                       m.direction.x() != 0 ? "x" : "y", m.frequency_hz, 100 * m.damping_ratio,
+                       m.stiffness_N_per_mm / 1000);
+  out +=
+      fmt::format("  margin {:.2f}: critical depth {:.2g} mm, {:.0f} Hz\n", o.margin, o.stable_depth_mm, o.chatter_hz);
+  for (const simulate::MarginEffect& e : simulate::margin_effects(job, o))
+    out += fmt::format("  {:.2f} to {:.2f} with the {} off by {}\n", e.low, e.high, e.property,
+                       percent_or_factor(e.error));
+  return out + fmt::format(
+                   "  {:.2f} to {:.2f} in eight of ten draws of all three and of process damping; probability of "
+                   "chatter {:.0f} %\n",
+                   o.margin_low, o.margin_high, 100 * o.probability);
+}
+
+}  // namespace
+
+std::string chatter_explanation(const machine::Job& job, const simulate::ChatterMargins& margins) {
+  if (margins.operations.empty()) return "chatter: nothing is milled\n";
+  std::string out;
+  for (const ChatterOperation* o : by_margin(margins)) out += explained(job, *o);
   return out;
 }
 

@@ -11,4 +11,7 @@ void add_chatter(ReportData& data, const machine::Job& job, const simulate::Chat
 /// Lines for the terminal: each operation with a margin above 1, or else the greatest margin. Empty: nothing is milled.
 std::string chatter_text(const simulate::ChatterMargins& margins);
 
+/// For predict --explain: the worst cut of each operation, the modes, and what their errors do to its margin.
+std::string chatter_explanation(const machine::Job& job, const simulate::ChatterMargins& margins);
+
 }  // namespace camber::report

@@ -233,6 +233,7 @@ Json chatter_json(const simulate::ChatterMargins& margins) {
          {"critical_depth_mm", o.stable_depth_mm},
          {"arc_deg", deg_from_rad(o.arc_rad)},
          {"probability", o.probability},
+         {"margin_range", {o.margin_low, o.margin_high}},
          {"stable_speed_rpm", o.stable_speed_rpm > 0 ? Json(o.stable_speed_rpm) : Json(nullptr)},
          {"lines", o.lines}});
   }

@@ -1,6 +1,7 @@
 #include "simulate/chatter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,9 +10,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "deflection/edge_force.h"
 #include "dynamics/stability_table.h"
 #include "dynamics/tool_modes.h"
+#include "simulate/passage_cut.h"
+#include "simulate/stable_speed.h"
 
 namespace camber::simulate {
 namespace {
@@ -19,50 +21,15 @@ namespace {
 using dynamics::ArcCut;
 using dynamics::StabilityTable;
 
-/// The angle whose sine is `ratio` times itself, 0 to pi.
-double angle_of_sinc(double ratio) {
-  double angle = std::sqrt(6 * std::max(0.0, 1 - ratio));
-  for (int i = 0; i < 5 && angle > 1e-6; ++i) angle -= (std::sin(angle) - ratio * angle) / (std::cos(angle) - ratio);
-  return std::clamp(angle, 0.0, kPi);
-}
-
-/// The cut of one tooth passing: one arc, and its depth.
-struct PassageCut {
-  ArcCut cut;
-  double depth_mm = 0;
-};
-
-PassageCut cut_of(const StampLoad& load, const machine::Material& material) {
-  const deflection::ChipArc& a = load.arc;
-  const double area = a.area_mm_rad, ratio = std::hypot(a.cosine_mm_rad, a.sine_mm_rad) / area;
-  PassageCut out;
-  out.cut.arc_rad = std::max(angle_of_sinc(ratio), 1e-3);
-  // From counter-clockwise of x to clockwise of y.
-  out.cut.centre_rad = kPi / 2 - std::atan2(a.sine_mm_rad, a.cosine_mm_rad) / 2;
-  out.depth_mm = area / out.cut.arc_rad;
-  const double chip = load.chip_area_mm2 > 0 ? load.chip_mm3 / load.chip_area_mm2 : 0;
-  const deflection::EdgeForce k = deflection::edge_force_slope(material, std::max(chip, 1e-3));
-  const double sine = std::min(1.0, a.wall_mm_rad / area);
-  out.cut.kt_MPa = k.tangential_N;
-  out.cut.kr_MPa = k.radial_N * sine + k.axial_N * std::sqrt(1 - sine * sine);
-  return out;
-}
-
 ArcCut worst_cut(const ChatterOperation& o) { return {o.arc_rad, o.centre_rad, o.kt_MPa, o.kr_MPa}; }
 
-/// From half of a speed to the spindle's limit or twice.
+/// Evenly from half of a speed to the spindle's limit or twice.
 std::vector<double> speeds_about(const machine::Job& job, double rpm, int count) {
-  const double lowest = rpm / 2, highest = std::max(rpm, std::min(job.machine.spindle.max_rpm, 2 * rpm));
+  const SpeedBounds bounds = usual_speeds(job, rpm);
   std::vector<double> speeds;
-  for (int i = 0; i < count; ++i) speeds.push_back(lowest + (highest - lowest) * i / (count - 1));
+  for (int i = 0; i < count; ++i)
+    speeds.push_back(bounds.lowest_rpm + (bounds.highest_rpm - bounds.lowest_rpm) * i / (count - 1));
   return speeds;
-}
-
-StabilityTable table_of(const machine::Job& job, const machine::Tool& tool, std::vector<machine::Mode> modes,
-                        double rpm, bool upright) {
-  if (upright) modes.insert(modes.end(), job.workpiece_modes.begin(), job.workpiece_modes.end());
-  return {std::move(modes), dynamics::teeth_of(tool), rpm,
-          tool.modes.empty() ? dynamics::kBeamModeErrors : dynamics::kMeasuredModeErrors};
 }
 
 /// What is known of one tool at one speed.
@@ -92,8 +59,7 @@ class ChatterSearch {
     std::uint32_t move = std::numeric_limits<std::uint32_t>::max();
     ToolAtSpeed* now = nullptr;
     for (std::size_t k = run.from; k < run.from + run.count && k < loads_.size(); ++k) {
-      constexpr float kNoCut = 1e-4f;
-      if (!(loads_[k].arc.area_mm_rad > kNoCut)) continue;
+      if (!cuts(loads_[k])) continue;
       if (stamps[k].move != move) {
         move = stamps[k].move;
         now = &at_speed(run.tool,
@@ -118,7 +84,7 @@ class ChatterSearch {
     const machine::Tool& tool = job_.tools.at(number);
     auto& own = modes_[number];
     if (own.empty()) own = dynamics::modes_of(tool);
-    return table_of(job_, tool, own, rpm, upright);
+    return stability_table(job_, tool, own, rpm, upright);
   }
 
   std::size_t line_of(std::size_t stamp) const {
@@ -126,7 +92,7 @@ class ChatterSearch {
   }
 
   void judge(std::size_t k, ToolAtSpeed& t) {
-    const PassageCut c = cut_of(loads_[k], job_.material);
+    const PassageCut c = passage_cut(loads_[k], job_.material);
     const dynamics::CriticalDepth critical = t.table->at(c.cut);
     const double margin = c.depth_mm / critical.depth_mm;
     found_.passages[k] = {static_cast<float>(margin), static_cast<float>(critical.chatter_hz)};
@@ -150,30 +116,18 @@ class ChatterSearch {
     o.depth_mm = t.worst.depth_mm, o.arc_rad = c.arc_rad, o.centre_rad = c.centre_rad;
     o.kt_MPa = c.kt_MPa, o.kr_MPa = c.kr_MPa;
     o.stable_depth_mm = o.depth_mm / o.margin;
-    o.probability = t.table->probability(c, o.depth_mm);
-    if (o.margin > 1) o.stable_speed_rpm = advised_speed(t);
+    const std::vector<double> drawn = t.table->drawn_depths(c);  // ascending
+    const auto stable = std::ranges::upper_bound(drawn, o.depth_mm);
+    o.probability = static_cast<double>(stable - drawn.begin()) / static_cast<double>(drawn.size());
+    o.margin_low = o.depth_mm / drawn[drawn.size() * 9 / 10];
+    o.margin_high = o.depth_mm / drawn[drawn.size() / 10];
+    if (o.margin > 1)
+      o.stable_speed_rpm =
+          find_stable_speed(job_, program_, loads_, o.tool, o.speed_rpm, usual_speeds(job_, o.speed_rpm)).rpm;
     std::ranges::sort(o.lines);
     const auto again = std::ranges::unique(o.lines);
     o.lines.erase(again.begin(), again.end());
     found_.operations.push_back(o);
-  }
-
-  /// The nearest speed to the programmed one; round, as a shop sets it.
-  double advised_speed(const ToolAtSpeed& t) {
-    constexpr int kSpeeds = 150;
-    const ChatterOperation& o = t.operation;
-    const ArcCut cut = worst_cut(o);
-    std::vector<double> speeds = speeds_about(job_, o.speed_rpm, kSpeeds);
-    for (double& rpm : speeds) rpm = std::max(10.0, 10 * std::floor(rpm / 10));
-    const auto depths = t.table->at_speeds(cut, speeds);
-    std::vector<double> stable;
-    for (std::size_t i = 0; i < speeds.size(); ++i)
-      if (o.depth_mm <= kAdvisedMargin * depths[i].depth_mm) stable.push_back(speeds[i]);
-    std::ranges::sort(stable, {}, [&](double rpm) { return std::abs(rpm - o.speed_rpm); });
-    // The method of the margins has the last word.
-    for (const double rpm : stable)
-      if (o.depth_mm <= kAdvisedMargin * table_at(o.tool, rpm, true).exactly_at(cut).depth_mm) return rpm;
-    return 0;
   }
 
   const machine::Job& job_;
@@ -203,13 +157,33 @@ std::vector<dynamics::LobePoint> lobes_of(const machine::Job& job, const Chatter
   constexpr int kSpeeds = 90;
   const machine::Tool& tool = job.tools.at(o.tool);
   const std::vector<double> speeds = speeds_about(job, o.speed_rpm, kSpeeds);
-  const auto depths = table_of(job, tool, dynamics::modes_of(tool), o.speed_rpm, true).at_speeds(worst_cut(o), speeds);
+  const auto depths =
+      stability_table(job, tool, dynamics::modes_of(tool), o.speed_rpm, true).at_speeds(worst_cut(o), speeds);
   std::vector<dynamics::LobePoint> out;
   for (std::size_t i = 0; i < speeds.size(); ++i)
     out.push_back(
         {speeds[i], depths[i],
          std::isfinite(depths[i].depth_mm) ? dynamics::StabilityBorder::hopf : dynamics::StabilityBorder::none});
   return out;
+}
+
+std::vector<MarginEffect> margin_effects(const machine::Job& job, const ChatterOperation& o) {
+  const machine::Tool& tool = job.tools.at(o.tool);
+  const StabilityTable table = stability_table(job, tool, dynamics::modes_of(tool), o.speed_rpm, true);
+  const dynamics::ModeErrors& e = o.measured ? dynamics::kMeasuredModeErrors : dynamics::kBeamModeErrors;
+  const auto effect = [&](std::string property, double dynamics::ModeErrors::*one) {
+    MarginEffect out{std::move(property), e.*one};
+    std::array<double, 2> margins{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      dynamics::ModeErrors factors{1, 1, 1};
+      factors.*one = std::exp(i == 0 ? -out.error : out.error);
+      margins[i] = o.depth_mm / table.with_modes_times(factors, worst_cut(o)).depth_mm;
+    }
+    out.low = std::min(margins[0], margins[1]), out.high = std::max(margins[0], margins[1]);
+    return out;
+  };
+  return {effect("frequency", &dynamics::ModeErrors::frequency), effect("damping", &dynamics::ModeErrors::damping),
+          effect("stiffness", &dynamics::ModeErrors::stiffness)};
 }
 
 std::string chatter_sentence(const ChatterOperation& o) {

@@ -27,6 +27,14 @@ void warn_of_chatter(const SimulatedProgram& program, const ChatterMargins& marg
 /// Critical depths of an operation's worst cut from half its speed to the spindle's limit, twice the speed at most.
 std::vector<dynamics::LobePoint> lobes_of(const machine::Job& job, const ChatterOperation& operation);
 
+/// The margin of an operation's worst cut with one property of all modes one standard error down and up.
+struct MarginEffect {
+  std::string property;      ///< "frequency"
+  double error = 0;          ///< standard deviation of its logarithm
+  double low = 0, high = 0;  ///< margins, ascending
+};
+std::vector<MarginEffect> margin_effects(const machine::Job& job, const ChatterOperation& operation);
+
 /// One sentence for an operation: "T1 at S8000: margin 0.42 ...".
 std::string chatter_sentence(const ChatterOperation& operation);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Feeds by load: the program of a job with F words that keep the loads of the cut within limits.
+// Feeds by load: the program of a job with F words that keep the loads of the cut within limits, and with S words that
+// keep it from chatter.
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -41,6 +42,21 @@ struct LimitSweepRow {
   double constant_time_s = 0;
 };
 
+/// With the limit chatter_margin: a tool at a programmed spindle speed.
+struct AdaptedSpeed {
+  int tool = 0;
+  double speed_before_rpm = 0, speed_after_rpm = 0;  ///< the same: not changed
+  double margin_before = 0, margin_after = 0;        ///< depth over critical depth, the greatest; above 1 unstable
+  std::size_t line = 0, new_line = 0;                ///< where, in the given and in the new program
+  double chatter_hz = 0;                             ///< frequency that is heard there before
+  double kept_depth_mm = 0;     ///< axial depth that would keep the limit there at the programmed speed
+  double stable_speed_rpm = 0;  ///< speed that keeps the limit; 0: none, or the programmed one does
+  double probability = 0;       ///< that the new program chatters, with the modes at their errors
+  bool modes_given = false;     ///< else those of the tool's beam, with a usual damping
+  bool kept = false;            ///< margin_after is within the limit
+  std::string reason{};         ///< why stable_speed_rpm is not in the new program
+};
+
 struct AdaptResult {
   std::string program{};               ///< text of the new program
   bool success = false;                ///< within the limits but for over_limit, within the time, with reliable figures
@@ -50,6 +66,7 @@ struct AdaptResult {
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
   std::vector<AdaptedLoad> loads{};
   std::vector<OverLimitBlock> over_limit{};
+  std::vector<AdaptedSpeed> speeds{};
   std::vector<LimitSweepRow> sweep{};
   double limit_factor = 1;                ///< by which time_limit_s scaled the limits
   std::vector<Diagnostic> diagnostics{};  ///< warnings

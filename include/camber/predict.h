@@ -90,6 +90,7 @@ struct PredictOptions {
   bool meshes = false;    ///< also fill the meshes of the result, and write them where there is an output_folder
   bool rows = true;       ///< fill the vectors and meshes of the result; else its figures alone
   std::string stock{};    ///< file: the machined stock; empty: none
+  bool explain = false;   ///< PredictResult::printed also says how uncertain the margins of chatter are
   bool throw_if_unwritten = true;  ///< else PredictResult::unwritten says what of output_folder could not be written
 };
 

@@ -2,6 +2,7 @@
 // Text rules: how a language writes the words that an edit changes. The emitter decides what each block becomes; the
 // rules say how the language puts it. One object for each emission: rules may follow what was written.
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,18 @@ class TextRules {
   virtual std::vector<Word> words_at_end(std::uint32_t block) const = 0;
   /// The program reads its modal feed, or something relies on it that has no F word of its own.
   virtual bool reads_feed() const { return false; }
+
+  // Spindle speed
+  /// The block's S word of this speed, where it is a number.
+  virtual std::optional<Word> speed_word(std::uint32_t block, double rpm) const {
+    for (const Word& w : program_.words_of(block))
+      if (w.letter == 'S' && w.value == rpm) return w;
+    return std::nullopt;
+  }
+  /// A line of its own with a speed. `address`: text of another S word before its number: "S", "S1=".
+  virtual std::string speed_line(const std::string& address, const std::string& number) const {
+    return address + number;
+  }
 
   // Coordinates
   /// Returns whether the axis word counts from where the tool stands; `word` null: a word that would be added.

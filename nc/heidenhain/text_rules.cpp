@@ -38,6 +38,29 @@ class KlartextRules : public TextRules {
     return out;
   }
 
+  /// In TOOL CALL, or S1000 alone.
+  std::optional<Word> speed_word(std::uint32_t block, double rpm) const override {
+    if (kind_of(block) != Kind::tool_call) return TextRules::speed_word(block, rpm);
+    const Statement& s = tree_.statements[statement_of_[block]];
+    const std::string& text = program_.source.text();
+    bool quoted = false;
+    for (std::size_t at = s.at; at < s.end && (quoted || text[at] != ';'); ++at) {
+      if (text[at] == '"') quoted = !quoted;
+      if (quoted || upper(text[at]) != 'S' || is_letter(text[at - 1])) continue;
+      Cursor number(text, at + 1, s.end);
+      number.more();
+      const std::size_t from = number.offset();
+      const auto value = number.number();
+      if (!value || *value != rpm) continue;
+      return Word{'S', static_cast<std::uint8_t>(from - at), static_cast<std::uint16_t>(number.offset() - at),
+                  static_cast<std::uint32_t>(at), *value};
+    }
+    return std::nullopt;
+  }
+  std::string speed_line(const std::string&, const std::string& number) const override {
+    return "TOOL CALL S" + number;
+  }
+
   bool incremental(const ModalState&, const Word* word) const override {
     return word && is_incremental(program_, *word);
   }

@@ -46,6 +46,21 @@ class SiemensTextRules : public LetterArcs {
     return std::ranges::find(names, "$P_F") != names.end();
   }
 
+  /// S6000, S=6000, S1=6000.
+  std::optional<Word> speed_word(std::uint32_t block, double rpm) const override {
+    if (const auto plain = LetterArcs::speed_word(block, rpm)) return plain;
+    const Statement* s = statement(block);
+    if (!s) return std::nullopt;
+    for (const Item& i : s->items) {
+      if (i.kind != ItemKind::word || !i.constant || i.number != rpm || tree_of(program_).names[i.name] != "S")
+        continue;
+      const Node& node = tree_of(program_).nodes[i.value];
+      return Word{'S', static_cast<std::uint8_t>(node.offset - i.offset),
+                  static_cast<std::uint16_t>(node.offset + node.length - i.offset), i.offset, i.number};
+    }
+    return std::nullopt;
+  }
+
   bool incremental(const ModalState& state, const Word* word) const override {
     if (word) {
       const std::string form = form_of(*word);

@@ -103,11 +103,38 @@ TEST(AdaptCommand, RefusesALowestFeedOverTheHighest) {
 }
 
 TEST(AdaptCommand, RefusesLimitsThatBoundNothing) {
+  expect_refused({.job = kJob + replaced(kAdapt, "force_N = 120.0", "chip_min_mm = 0.01")},
+                 "job.toml:19:10: error: limits has no load that bounds the feed from above; at least one of force_N, "
+                 "torque_Nm, deflection_um, form_error_um, chip_mm and power_W was expected, or chatter_margin alone "
+                 "[limits-missing]\n    limits "
+                 "= { chip_min_mm = 0.01 }\n             ^\n");
+}
+
+TEST(AdaptCommand, RefusesAMarginThatIsUnstable) {
+  expect_refused({.job = kJob + replaced(kAdapt, "force_N = 120.0", "chatter_margin = 1.2")},
+                 "job.toml:19:29: error: chatter_margin is 1.2; a number greater than zero and at most 1 was expected "
+                 "[value-range]\n    limits = { chatter_margin = 1.2 }\n                                ^\n");
+}
+
+TEST(AdaptCommand, RefusesLeversThatAreNone) {
+  expect_refused({.job = kJob + kAdapt + "levers = [\"feed\", \"depth\"]\n"},
+                 "job.toml:21:10: error: levers names \"depth\"; a list of \"feed\" and \"speed\" was expected "
+                 "[value-choice]\n    levers = [\"feed\", \"depth\"]\n             ^\n");
+  expect_refused({.job = kJob + kAdapt + "levers = [\"feed\", \"speed\"]\n"},
+                 "job.toml:21:10: error: levers names \"speed\", but limits has no chatter_margin, by which speeds are "
+                 "chosen; limits = { chatter_margin = 0.8 } was expected [value-choice]\n    levers = [\"feed\", "
+                 "\"speed\"]\n             ^\n");
+  expect_refused({.job = kJob + replaced(kAdapt, "120.0", "120.0, chatter_margin = 0.8") + "levers = [\"speed\"]\n"},
+                 "job.toml:21:10: error: levers does not name \"feed\", by which alone a load is kept within limits; "
+                 "[\"feed\", \"speed\"] or chatter_margin as the only limit was expected [value-choice]\n    levers = "
+                 "[\"speed\"]\n             ^\n");
+}
+
+TEST(AdaptCommand, RefusesSpindleSpeedsWithoutTheirLever) {
   expect_refused(
-      {.job = kJob + replaced(kAdapt, "force_N = 120.0", "chip_min_mm = 0.01")},
-      "job.toml:19:10: error: limits has no load that bounds the feed from above; at least one of force_N, "
-      "torque_Nm, deflection_um, form_error_um, chip_mm and power_W was expected [limits-missing]\n    limits "
-      "= { chip_min_mm = 0.01 }\n             ^\n");
+      {.job = kJob + kAdapt + "spindle_rpm = [2000, 6000]\n"},
+      "job.toml:21:1: error: [adapt] has spindle_rpm, but levers does not name \"speed\"; levers = [\"feed\", "
+      "\"speed\"] was expected [value-choice]\n    spindle_rpm = [2000, 6000]\n    ^\n");
 }
 
 TEST(AdaptCommand, RefusesAKeyThatIsNone) {

@@ -35,6 +35,13 @@ void expect_zero_order_as_in_table(const LobeCase& c) {
   }
 }
 
+/// The table ends at 20 times the lowest depth of zero order: a border within its accuracy of that end is in it or not.
+bool is_beyond_table(const LobeCase& c, const SemiBorder& found) {
+  if (found.border == StabilityBorder::none) return true;
+  return found.critical.depth_mm >
+         (1 - kDepth) * SemiOptions{}.deepest * ZeroOrderLobes(c.modes, c.cut).lowest_depth_mm();
+}
+
 void expect_semi_discretisation_as_in_table(const LobeCase& c, std::size_t every) {
   tests::LargestFigure depths("critical depth, case " + c.name, kDepth);
   for (std::size_t i = 0; i < c.table.at("speed_rpm").size(); i += every) {
@@ -42,7 +49,7 @@ void expect_semi_discretisation_as_in_table(const LobeCase& c, std::size_t every
     if (known_exception(c, rpm)) continue;
     const SemiBorder found = semi_border(c.modes, c.cut, rpm);
     if (std::isnan(depth)) {
-      EXPECT_EQ(found.border, StabilityBorder::none) << c.name << " " << rpm;
+      EXPECT_TRUE(is_beyond_table(c, found)) << c.name << " " << rpm;
       continue;
     }
     depths.expect(found.critical.depth_mm, depth, fmt::format("{} rpm", rpm));
