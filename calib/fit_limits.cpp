@@ -14,7 +14,7 @@
 #include "base/units.h"
 #include "calib/bounded_least_squares.h"
 #include "feedmodel/joint_map.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 
 namespace camber::calib {
 namespace {

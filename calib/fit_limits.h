@@ -6,7 +6,7 @@
 
 #include "calib/feed_accuracy.h"
 #include "calib/fit_drive.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "machine/machine.h"
 #include "nc/move.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "feedmodel/turn.h"
+#include "feedmodel/segment.h"
 #include "machine/machine.h"
 #include "nc/move.h"
 

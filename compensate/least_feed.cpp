@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 
 namespace camber::compensate {
 namespace {

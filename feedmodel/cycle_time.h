@@ -10,6 +10,17 @@
 
 namespace camber::feedmodel {
 
+struct MotionTimes {
+  std::vector<double> move_s;        ///< one per move; merged lines count at the last of them
+  std::vector<float> acceleration;   ///< along the path of each cutting move's last segment, mm/s^2; 0: none
+  std::size_t speed_changes = 0;     ///< along the path and of positionings
+  std::size_t below_full_rapid = 0;  ///< positionings
+  std::size_t unplaced_moves = 0;    ///< see CycleTime
+};
+
+/// The times of plan_motion, move by move: their sum is the time that predict_feed takes.
+MotionTimes motion_times(const nc::Interpretation& program, const machine::Machine& machine);
+
 /// Time by kind of operation. Of simultaneous actions, the motion keeps its whole time and the others count the time by
 /// which they are longer. Source: Takata 1999, eqs. 2.1-2.2.
 struct CycleSplit {

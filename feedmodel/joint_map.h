@@ -2,7 +2,7 @@
 // Maps what a program names (tip or axis positions, angles) to the joints of the machine and to the tool's pose in the
 // part's frame.
 #include "base/tool_pose.h"
-#include "feedmodel/turn.h"
+#include "feedmodel/segment.h"
 #include "kinematics/chain.h"
 #include "machine/machine.h"
 #include "nc/move.h"

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "feedmodel/joint_map.h"
-#include "feedmodel/turn.h"
+#include "feedmodel/segment.h"
 #include "kinematics/program_joints.h"
 
 namespace camber::feedmodel {

@@ -7,7 +7,7 @@
 
 #include "calib/fit_feed.h"
 #include "calib/fit_stretches.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "tests/support/synthetic_control.h"
 
 namespace camber::calib {

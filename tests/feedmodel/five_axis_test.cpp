@@ -11,7 +11,7 @@
 
 #include "base/units.h"
 #include "feedmodel/joint_map.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/program_joints.h"
 #include "tests/feedmodel/rotary_programs.h"

@@ -5,7 +5,7 @@
 #include "base/units.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/joint_map.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "kinematics/machine_moves.h"
 #include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"

@@ -10,7 +10,7 @@
 #include "feedmodel/cycle_time.h"
 #include "feedmodel/limits.h"
 #include "feedmodel/rapid.h"
-#include "feedmodel/spindle_start.h"
+#include "feedmodel/rests.h"
 #include "machine/cases.h"
 #include "test_paths.h"
 #include "tests/support/nc_program.h"

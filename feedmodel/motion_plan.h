@@ -6,16 +6,16 @@
 //
 // A control turns moves into the motion of its axes in four steps, and so does this folder:
 //
-// 1. path_builder  moves become segments: short lines are merged (merge), corners are rounded or get a speed limit
-//                  (corner, turning_corner), positioning moves become their own axis motions (rapid), and each segment
-//                  gets the limits of its axes (limits, joint_limits), of the block time and of the parameter set that
-//                  is active (modes). rests are places where the control waits.
+// 1. path_builder  moves become segments: short lines are merged, corners are rounded or get a speed limit (corner),
+//                  positioning moves become their own axis motions (rapid), and each segment gets the limits of its
+//                  axes and joints (limits), of the block time and of the parameter set that is active (modes). rests
+//                  are places where the control waits.
 // 2. lookahead     a backward and a forward pass find the entry speed of each segment, v_i^2 <= v_(i+1)^2 + 2 a L, over
 //                  the whole path or a horizon of blocks.
-// 3. segment_motion gives the speed over time within a segment (profile: trapezoid or triangle; exponential; bell and
-//                  jerk filter as longer ramps). in_position adds the wait of the axes at stops.
-// 4. axes          turn commands at each period of the control into actual positions: drive is one axis with its filter
-//                  (axis_filter), dead time, position loop (position_loop) and backlash.
+// 3. segment_motion gives the speed over time within a segment (trapezoid or triangle; exponential; bell and jerk
+//                  filter as longer ramps). axes adds their wait at stops.
+// 4. axes          turn commands at each period of the control into actual positions: drive is one axis with its
+//                  filter, dead time, position loop and backlash.
 //
 // plan_motion() does 1 to 3 and returns times; predict_feed() (timed_path.h) adds 4 and returns samples. Programs
 // with rotary axes go through joint_map, move_turns and overlap as well; samples then carry tool poses (part_tracking).

@@ -1,4 +1,4 @@
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "base/stage.h"
-#include "feedmodel/in_position.h"
+#include "feedmodel/axes.h"
 #include "feedmodel/joint_map.h"
 #include "feedmodel/modes.h"
 #include "feedmodel/overlap.h"

@@ -1,4 +1,4 @@
-#include "feedmodel/position_loop.h"
+#include "feedmodel/drive.h"
 
 #include <cmath>
 
