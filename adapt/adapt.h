@@ -9,7 +9,7 @@
 #include "adapt/feed_chooser.h"
 #include "adapt/load.h"
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/setup.h"
 
 namespace camber::adapt {

@@ -10,7 +10,7 @@
 #include "api/job.h"
 #include "api/run.h"
 #include "machine/assumptions.h"
-#include "machine/levers.h"
+#include "machine/compensation_settings.h"
 #include "report/feature_results.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"

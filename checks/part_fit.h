@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/part_mesh.h"
 #include "simulate/predict.h"
 

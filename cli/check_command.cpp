@@ -19,7 +19,7 @@
 #include "feedmodel/cycle_time.h"
 #include "kinematics/pose_track.h"
 #include "machine/assumptions.h"
-#include "machine/job_programs.h"
+#include "machine/job_file.h"
 #include "nc/language.h"
 #include "nc/program.h"
 #include "report/path_arrays.h"

@@ -19,7 +19,7 @@
 #include "cli/rounds_progress.h"
 #include "compensate/trial.h"
 #include "machine/assumptions.h"
-#include "machine/job_programs.h"
+#include "machine/job_file.h"
 #include "report/feature_results.h"
 #include "report/report_data.h"
 #include "report/summary.h"

@@ -16,7 +16,7 @@
 #include "cli/study_command.h"
 #include "cli/verify_command.h"
 #include "compensate/verify.h"
-#include "machine/job_programs.h"
+#include "machine/job_file.h"
 
 namespace camber::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "cli/outputs.h"
 #include "dynamics/tool_lobes.h"
 #include "dynamics/tool_modes.h"
-#include "machine/unprogrammed_job.h"
+#include "machine/job_file.h"
 #include "report/lobes_svg.h"
 
 namespace camber::cli {

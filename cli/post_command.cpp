@@ -9,7 +9,7 @@
 #include "base/stage.h"
 #include "cli/console.h"
 #include "cli/progress.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/language.h"
 
 namespace camber::cli {

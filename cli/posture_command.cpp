@@ -11,7 +11,7 @@
 #include "cli/console.h"
 #include "cli/posture_page.h"
 #include "cli/progress.h"
-#include "machine/unprogrammed_job.h"
+#include "machine/job_file.h"
 #include "nc/language.h"
 
 namespace camber::cli {

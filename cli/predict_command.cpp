@@ -14,7 +14,7 @@
 #include "cli/console.h"
 #include "cli/progress.h"
 #include "machine/assumptions.h"
-#include "machine/job_programs.h"
+#include "machine/job_file.h"
 #include "report/feature_results.h"
 #include "report/summary.h"
 

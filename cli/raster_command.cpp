@@ -16,7 +16,7 @@
 #include "cli/raster_report.h"
 #include "cli/rewrite_report.h"
 #include "feedmodel/control_options.h"
-#include "machine/unprogrammed_job.h"
+#include "machine/job_file.h"
 #include "repath/fastest.h"
 #include "repath/raster.h"
 #include "repath/raster_text.h"

@@ -9,7 +9,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/validators.h"
-#include "machine/unprogrammed_job.h"
+#include "machine/job_file.h"
 
 namespace camber::cli {
 namespace {

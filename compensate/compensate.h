@@ -39,7 +39,7 @@
 #include "compensate/uncertainty.h"
 #include "compensate/verdict.h"
 #include "compensate/worse.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/stock.h"
 #include "simulate/setup.h"
 

@@ -8,7 +8,7 @@
 #include "base/diagnostics.h"
 #include "compensate/attribution.h"
 #include "compensate/program_line.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/predict.h"
 #include "simulate/travel.h"
 

@@ -7,7 +7,7 @@
 #include "compensate/attribution.h"
 #include "compensate/error_split.h"
 #include "compensate/program_line.h"
-#include "machine/job.h"
+#include "machine/compensation_settings.h"
 #include "removal/form_error.h"
 
 namespace camber::compensate {

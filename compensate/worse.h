@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "compensate/attribution.h"
-#include "machine/job.h"
+#include "machine/compensation_settings.h"
 #include "removal/form_error.h"
 
 namespace camber::compensate {

@@ -35,7 +35,7 @@
 #include "copymill/load_follower.h"
 #include "copymill/part_check.h"
 #include "machine/copy_operations.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/write/program_writer.h"
 #include "removal/stock.h"
 #include "simulate/force_regions.h"

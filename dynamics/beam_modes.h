@@ -3,8 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "machine/job.h"
-#include "machine/mode.h"
+#include "machine/tool.h"
 
 namespace camber::dynamics {
 

@@ -15,7 +15,7 @@
 
 #include <Eigen/Core>
 
-#include "machine/mode.h"
+#include "machine/tool.h"
 
 namespace camber::dynamics {
 

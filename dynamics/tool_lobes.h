@@ -4,7 +4,8 @@
 
 #include "dynamics/cut.h"
 #include "dynamics/semi_discretisation.h"
-#include "machine/job.h"
+#include "machine/material.h"
+#include "machine/tool.h"
 
 namespace camber::dynamics {
 

@@ -2,7 +2,7 @@
 // The modes of a job's tools, and their teeth.
 #include "dynamics/beam_modes.h"
 #include "dynamics/cut.h"
-#include "machine/job.h"
+#include "machine/tool.h"
 
 namespace camber::dynamics {
 

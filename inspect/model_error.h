@@ -1,6 +1,6 @@
 #pragma once
 // How sure the model is of a job's features.
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::inspect {
 

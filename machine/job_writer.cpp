@@ -4,9 +4,8 @@
 
 #include "machine/assumptions.h"
 #include "machine/job_keys.h"
+#include "machine/job_tables.h"
 #include "machine/material_reader.h"
-#include "machine/mode_reader.h"
-#include "machine/tool_reader.h"
 
 namespace camber::machine {
 namespace {

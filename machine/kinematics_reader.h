@@ -18,4 +18,10 @@ void check_kinematics(TomlTable& top, const Machine& machine);
 std::string kinematics_text(const Kinematics& kinematics);
 std::string rotary_axis_text(std::string_view name, const RotaryAxis& axis);
 
+/// After [kinematics].
+void read_bodies(TomlTable& top, Machine& machine);
+
+/// The body as machine.toml text that begins with an empty line.
+std::string body_text(const Body& body);
+
 }  // namespace camber::machine

@@ -2,7 +2,7 @@
 // The program of one finishing operation, moved against its predicted form error.
 #include <string>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::plan {
 

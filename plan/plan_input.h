@@ -7,7 +7,11 @@
 
 #include <Eigen/Geometry>
 
-#include "machine/job.h"
+#include "machine/machine.h"
+#include "machine/material.h"
+#include "machine/simulation_settings.h"
+#include "machine/tool.h"
+#include "machine/workpiece.h"
 #include "plan/cases.h"
 #include "plan/faces.h"
 

@@ -8,7 +8,6 @@
 #include "machine/machine_presets.h"
 #include "machine/material_reader.h"
 #include "machine/number_key.h"
-#include "machine/tool_reader.h"
 #include "plan/plan_input.h"
 #include "plan/plan_words.h"
 

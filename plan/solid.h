@@ -7,7 +7,7 @@
 
 #include "base/geometry.h"
 #include "base/stl.h"
-#include "machine/job.h"
+#include "machine/workpiece.h"
 
 namespace camber::plan {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/stl.h"
-#include "machine/job.h"
+#include "machine/tool.h"
 #include "nc/move.h"
 
 namespace camber::posture {

@@ -7,7 +7,8 @@
 
 #include "base/geometry.h"
 #include "base/stl.h"
-#include "machine/job.h"
+#include "machine/machine.h"
+#include "machine/tool.h"
 #include "simulate/machine_solids.h"
 
 namespace camber::posture {

@@ -11,7 +11,8 @@
 #include "feedmodel/part_tracking.h"
 #include "feedmodel/path_tracker.h"
 #include "feedmodel/timed_path.h"
-#include "machine/job.h"
+#include "machine/simulation_settings.h"
+#include "machine/tool.h"
 #include "nc/move.h"
 
 namespace camber::removal {

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "machine/job_tables.h"
 #include "machine/number_key.h"
-#include "machine/tool_reader.h"
 #include "report/html_report.h"
 #include "report/page_tables.h"
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "machine/tool_proposal.h"
+#include "machine/workpiece.h"
 #include "nc/move.h"
 #include "nc/program.h"
 

@@ -4,7 +4,8 @@
 #include <memory>
 #include <span>
 
-#include "machine/job.h"
+#include "machine/material.h"
+#include "machine/tool.h"
 #include "removal/step_engagement.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "removal/stock_part.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/stock_part.h"
 #include "simulate/cut.h"
 #include "simulate/predict.h"

@@ -8,7 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "feedmodel/timed_path.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "removal/form_error.h"

@@ -10,7 +10,7 @@
 #include "feedmodel/part_tracking.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/part_path.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 

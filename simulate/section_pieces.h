@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/sparse_list.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/stock_part.h"
 #include "removal/tool_path.h"
 

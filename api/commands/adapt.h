@@ -2,7 +2,7 @@
 // The work of camber adapt.
 #include "adapt/adapt.h"
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::api {
 

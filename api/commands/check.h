@@ -7,7 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "kinematics/feed_meaning.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/interpreter.h"
 #include "nc/summary.h"
 

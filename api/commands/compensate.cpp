@@ -9,7 +9,7 @@
 #include "compensate/recheck.h"
 #include "compensate/verify.h"
 #include "feedmodel/fitted_range.h"
-#include "machine/levers.h"
+#include "machine/compensation_settings.h"
 #include "nc/interpreter.h"
 #include "simulate/rotary_motion.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "checks/plausibility.h"
-#include "machine/unprogrammed_job.h"
+#include "machine/job_file.h"
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
 #include "simulate/predict.h"

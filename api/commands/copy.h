@@ -6,7 +6,7 @@
 #include "base/diagnostics.h"
 #include "copymill/copy.h"
 #include "machine/copy_operations.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::api {
 

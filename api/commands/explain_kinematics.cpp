@@ -1,7 +1,7 @@
 #include "api/commands/explain_kinematics.h"
 
 #include "base/json.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "machine/toml_table.h"
 
 namespace camber::api {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "machine/machine.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"

@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "kinematics/pose_track.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "posture/posture.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/pieces.h"
 #include "simulate/setup.h"
 #include "simulate/traced.h"

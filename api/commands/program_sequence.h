@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/job_programs.h"
+#include "machine/job_file.h"
 
 namespace camber::api {
 

@@ -10,7 +10,7 @@
 
 #include "api/commands/predict.h"
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/sections.h"
 
 namespace camber::api {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
-#include "machine/study.h"
+#include "machine/job_file.h"
+#include "machine/study_file.h"
 #include "report/study_table.h"
 
 namespace camber::api {

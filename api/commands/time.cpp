@@ -12,7 +12,7 @@
 #include "calib/cycle_accuracy.h"
 #include "feedmodel/fitted_range.h"
 #include "feedmodel/joint_map.h"
-#include "machine/cases.h"
+#include "machine/cycle_cases.h"
 #include "machine/set_number.h"
 #include "nc/language.h"
 #include "report/cycle_page.h"

@@ -4,7 +4,7 @@
 
 #include "base/diagnostics.h"
 #include "compensate/verify.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::api {
 

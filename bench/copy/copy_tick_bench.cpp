@@ -15,7 +15,7 @@
 
 #include "bench/copy/process_figures.h"
 #include "copymill/copy.h"
-#include "machine/unprogrammed_job.h"
+#include "machine/job_file.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "copymill/copy.h"
-#include "machine/unprogrammed_job.h"
+#include "machine/job_file.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
 

@@ -11,7 +11,7 @@
 #include "feedmodel/limits.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/rests.h"
-#include "machine/cases.h"
+#include "machine/cycle_cases.h"
 #include "test_paths.h"
 #include "tests/support/nc_program.h"
 #include "tests/support/test_program.h"

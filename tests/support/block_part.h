@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/stl.h"
-#include "machine/job.h"
+#include "machine/workpiece.h"
 
 namespace camber::tests {
 

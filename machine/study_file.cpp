@@ -1,4 +1,4 @@
-#include "machine/study.h"
+#include "machine/study_file.h"
 
 #include <algorithm>
 #include <filesystem>

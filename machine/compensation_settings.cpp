@@ -1,4 +1,4 @@
-#include "machine/levers.h"
+#include "machine/compensation_settings.h"
 
 #include <algorithm>
 

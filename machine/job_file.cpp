@@ -5,14 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "machine/compensation_settings.h"
+#include "machine/job_file.h"
 #include "machine/job_keys.h"
-#include "machine/job_programs.h"
 #include "machine/job_tables.h"
-#include "machine/levers.h"
 #include "machine/machine_presets.h"
 #include "machine/material_reader.h"
-#include "machine/mode_reader.h"
-#include "machine/unprogrammed_job.h"
 
 namespace camber::machine {
 namespace {

@@ -1,4 +1,4 @@
-#include "machine/cases.h"
+#include "machine/cycle_cases.h"
 
 #include <filesystem>
 
