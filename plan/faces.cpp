@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "plan/holes.h"
-#include "plan/mesh_edges.h"
+#include "plan/find_holes.h"
+#include "plan/triangle_solid.h"
 
 namespace camber::plan {
 namespace {

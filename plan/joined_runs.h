@@ -1,6 +1,6 @@
 #pragma once
 // Operations that are cut in one run, as one region.
-#include "plan/operations.h"
+#include "plan/planned_operations.h"
 
 namespace camber::plan {
 

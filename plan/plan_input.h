@@ -12,7 +12,7 @@
 #include "machine/simulation_settings.h"
 #include "machine/tool.h"
 #include "machine/workpiece.h"
-#include "plan/cases.h"
+#include "plan/case_base.h"
 #include "plan/faces.h"
 
 namespace camber::plan {

@@ -2,7 +2,7 @@
 // The table of operations as a file that the user edits and gives back.
 #include <string>
 
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 
 namespace camber::plan {
 

@@ -3,24 +3,56 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
+#include "base/output_file.h"
 #include "base/temporary_folder.h"
 #include "base/units.h"
+#include "compensate/compensate.h"
 #include "copymill/copy.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
+#include "machine/job_file.h"
 #include "machine/number_key.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
-#include "plan/compensated_program.h"
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
 #include "simulate/predict.h"
 
 namespace camber::plan {
 namespace {
+
+struct CompensatedProgram {
+  std::string text;  ///< the given one where compensation is of no use
+  std::string note;  ///< form error before and after, or why it stays as it is
+};
+
+CompensatedProgram kept(const std::string& text, const std::string& why) { return {text, "not compensated: " + why}; }
+
+/// `stock_vdb`: what stands before the operation. The part's mesh is the target. Throws Cancelled.
+CompensatedProgram compensated(const machine::Job& job, const std::string& stock_vdb, const std::string& text) {
+  const TemporaryFolder folder;
+  machine::Job of = job;
+  of.program = folder.path() + "/finish" + std::string(feedmodel::dialect_of(job.machine.control.kind).file_extension);
+  of.stock = {};
+  of.stock.vdb = stock_vdb;
+  write_file(of.program, text);
+  try {
+    Diagnostics ignored;  // of a program that is not the one that is written
+    const compensate::CompensationResult done = compensate::compensate(of, ignored, {});
+    const double before = done.before_um.p95, after = done.after_um.p95;
+    if (!done.better) return kept(text, fmt::format("its form error, {:.1f} um (p95), does not become less", before));
+    return {done.text, fmt::format("compensated: form error {:.1f} um (p95) without, {:.1f} um with it, both predicted",
+                                   before, after)};
+  } catch (const BeyondModel& beyond) {
+    return kept(text, beyond.what());
+  } catch (const InputError& error) {
+    return kept(text, error.diagnostics().front().message);
+  }
+}
 
 machine::CopyMode mode_of(Pattern pattern) {
   switch (pattern) {

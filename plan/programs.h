@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "machine/copy_operations.h"
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 
 namespace camber::plan {
 

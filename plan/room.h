@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "plan/solid.h"
+#include "plan/triangle_solid.h"
 
 namespace camber::plan {
 

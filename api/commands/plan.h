@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 
 namespace camber::api {
 

@@ -2,7 +2,7 @@
 // the demonstration part.
 #include <gtest/gtest.h>
 
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 #include "test_paths.h"
 #include "tests/support/block_part.h"
 

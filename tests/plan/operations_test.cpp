@@ -1,11 +1,11 @@
-#include "plan/operations.h"
+#include "plan/planned_operations.h"
 
 #include <map>
 
 #include <gtest/gtest.h>
 
-#include "plan/plan.h"
 #include "plan/plan_table.h"
+#include "plan/setup_plan.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
 

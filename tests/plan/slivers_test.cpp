@@ -5,7 +5,6 @@
 
 #include "plan/layered_solid.h"
 #include "plan/order.h"
-#include "plan/polygon_triangles.h"
 #include "plan/room.h"
 #include "tests/support/block_part.h"
 

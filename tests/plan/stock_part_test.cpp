@@ -1,5 +1,5 @@
 // A stock as a part: layers between its floors, holes apart.
-#include "plan/stock_part.h"
+#include "plan/part_of_stock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "plan/operations.h"
+#include "plan/planned_operations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -48,4 +48,13 @@ Solid turned(const Solid& solid, const Eigen::Matrix3d& turn);
 std::vector<double> material_along_z(const Solid& solid, double x_mm, double y_mm);
 bool contains(const Solid& solid, const Vec3& point);
 
+/// neighbours[3 t + e]: the triangle at the edge from corner e to corner e + 1 of triangle t; kNone where there is none
+/// or more than one.
+struct MeshEdges {
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  explicit MeshEdges(const Solid& solid);
+  std::uint32_t across(std::size_t triangle, std::size_t edge) const { return neighbours[3 * triangle + edge]; }
+  std::vector<std::uint32_t> neighbours;
+};
+
 }  // namespace camber::plan

@@ -8,8 +8,8 @@
 #include "machine/machine_presets.h"
 #include "machine/material_reader.h"
 #include "machine/number_key.h"
+#include "plan/case_base.h"
 #include "plan/plan_input.h"
-#include "plan/plan_words.h"
 
 namespace camber::plan {
 namespace {

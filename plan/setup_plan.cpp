@@ -1,4 +1,4 @@
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "base/mesh_file.h"
 #include "base/stage.h"
-#include "plan/stock_part.h"
+#include "plan/part_of_stock.h"
 #include "plan/stock_solid.h"
 
 namespace camber::plan {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "plan/faces.h"
-#include "plan/mesh_edges.h"
+#include "plan/triangle_solid.h"
 
 namespace camber::plan {
 

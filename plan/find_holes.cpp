@@ -1,4 +1,4 @@
-#include "plan/holes.h"
+#include "plan/find_holes.h"
 
 #include <algorithm>
 #include <cmath>

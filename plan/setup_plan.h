@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "plan/operations.h"
 #include "plan/plan_input.h"
+#include "plan/planned_operations.h"
 #include "plan/removal_volume.h"
 
 namespace camber::plan {

@@ -11,6 +11,9 @@
 
 namespace camber::plan {
 
+inline constexpr std::array<std::string_view, 2> kFinishWords{"rough", "fine"};
+inline constexpr std::array<std::string_view, 2> kMachiningWords{"usual", "fast"};
+
 /// Attributes of a case, or of the question that is compared with cases.
 struct CaseContent {
   std::string material{};       ///< "FC250"

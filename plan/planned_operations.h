@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plan/conditions.h"
-#include "plan/tools.h"
+#include "plan/tool_choice.h"
 
 namespace camber::plan {
 

@@ -1,4 +1,4 @@
-#include "plan/stock_part.h"
+#include "plan/part_of_stock.h"
 
 #include <algorithm>
 #include <cmath>
