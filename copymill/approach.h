@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "copymill/pass.h"
+#include "copymill/path_piece.h"
 #include "copymill/runner.h"
 #include "copymill/standing.h"
 #include "copymill/tip_field.h"

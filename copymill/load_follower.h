@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include "copymill/felt_hardness.h"
 #include "copymill/load_rule.h"
 #include "machine/copy_operations.h"
 #include "machine/job_file.h"

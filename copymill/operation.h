@@ -2,7 +2,7 @@
 // The modes of copy milling: each makes its passes from the part and what stands, and cuts them.
 #include "base/stl.h"
 #include "copymill/approach.h"
-#include "copymill/region.h"
+#include "copymill/axis_region.h"
 #include "copymill/runner.h"
 #include "copymill/standing.h"
 #include "copymill/tip_field.h"

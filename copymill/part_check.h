@@ -4,7 +4,7 @@
 
 #include "base/geometry.h"
 #include "base/stl.h"
-#include "copymill/region.h"
+#include "copymill/axis_region.h"
 #include "copymill/tip_field.h"
 #include "machine/copy_operations.h"
 #include "removal/cutter.h"

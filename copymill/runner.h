@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "copymill/clear_height.h"
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
+#include "copymill/feed_motion.h"
 #include "copymill/load_follower.h"
-#include "copymill/motion.h"
 #include "copymill/part_check.h"
 #include "copymill/standing.h"
 #include "removal/cutter.h"

@@ -11,7 +11,7 @@
 #include "base/temporary_folder.h"
 #include "base/units.h"
 #include "compensate/compensate.h"
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 #include "feedmodel/control_options.h"
 #include "feedmodel/cycle_time.h"
 #include "machine/job_file.h"

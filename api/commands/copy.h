@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 #include "machine/copy_operations.h"
 #include "machine/job_file.h"
 

@@ -14,7 +14,7 @@
 #include <tbb/global_control.h>
 
 #include "bench/copy/process_figures.h"
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 #include "machine/job_file.h"
 
 namespace {

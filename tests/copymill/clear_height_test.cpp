@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "copymill/standing.h"
-#include "copymill/underside.h"
 #include "machine/tool.h"
 
 namespace camber::copymill {

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "copymill/speed_ahead.h"
+#include "copymill/feed_motion.h"
 #include "simulate/load_probe.h"
 #include "tests/support/cutting.h"
 

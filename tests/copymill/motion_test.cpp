@@ -1,4 +1,4 @@
-#include "copymill/motion.h"
+#include "copymill/feed_motion.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "copymill/region.h"
+#include "copymill/axis_region.h"
 
 #include <algorithm>
 
