@@ -7,7 +7,7 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
-#include "calib/rotary_lines.h"
+#include "calib/line_speeds.h"
 #include "feedmodel/joint_map.h"
 #include "feedmodel/timed_path.h"
 

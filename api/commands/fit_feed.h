@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "calib/fit_stretches.h"
 #include "machine/machine.h"
 #include "nc/interpreter.h"

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "feedmodel/control_options.h"
 #include "kinematics/rotary_options.h"
 #include "nc/interpreter.h"

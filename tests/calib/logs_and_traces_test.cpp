@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "calib/fit_stretches.h"
 #include "feedmodel/motion_plan.h"
 #include "tests/support/synthetic_control.h"

@@ -1,4 +1,4 @@
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 
 #include <fmt/format.h>
 
@@ -7,13 +7,9 @@
 #include <random>
 
 #include "base/units.h"
+#include "calib/fit_acceleration.h"
 #include "calib/fit_limits.h"
-#include "calib/fit_ramp.h"
-#include "calib/fit_smoothing.h"
-#include "calib/logged_lines.h"
-#include "calib/rotary_lines.h"
-#include "calib/top_speed.h"
-#include "calib/traced_acceleration.h"
+#include "calib/line_speeds.h"
 #include "feedmodel/fitted_range.h"
 #include "feedmodel/joint_map.h"
 #include "machine/set_number.h"
