@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "dynamics/cut.h"
+#include "dynamics/vibrating_cut.h"
 #include "dynamics/zero_order.h"
 
 namespace camber::dynamics {
