@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "cli/check_command.h"
 #include "kinematics/pose_track.h"
 #include "machine/machine.h"

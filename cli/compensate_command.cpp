@@ -10,9 +10,9 @@
 
 #include "api/commands/compensate.h"
 #include "api/commands/program_sequence.h"
+#include "base/folders.h"
 #include "base/output_file.h"
 #include "base/stage.h"
-#include "base/temporary_folder.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/json.h"
-#include "base/mesh_file.h"
 #include "base/output_file.h"
+#include "base/triangle_mesh.h"
 #include "checks/plausibility.h"
 #include "cli/console.h"
 #include "cli/outputs.h"

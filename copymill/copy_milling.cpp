@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "copymill/operation.h"
 #include "simulate/job_stock.h"
 

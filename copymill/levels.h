@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "copymill/axis_region.h"
 #include "copymill/path_piece.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 // The modes of copy milling: each makes its passes from the part and what stands, and cuts them.
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "copymill/approach.h"
 #include "copymill/axis_region.h"
 #include "copymill/runner.h"

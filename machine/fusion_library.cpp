@@ -8,8 +8,8 @@
 #include <zip.h>
 #include <nlohmann/json.hpp>
 
-#include "base/confined_files.h"
 #include "base/diagnostics.h"
+#include "base/folders.h"
 #include "base/units.h"
 #include "machine/job_keys.h"
 #include "machine/library_words.h"

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "base/folders.h"
 #include "base/output_file.h"
-#include "base/temporary_folder.h"
 #include "base/units.h"
 #include "compensate/compensate.h"
 #include "copymill/copy_milling.h"

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "base/mesh_file.h"
 #include "base/stage.h"
+#include "base/triangle_mesh.h"
 #include "plan/part_of_stock.h"
 #include "plan/stock_solid.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "machine/tool.h"
 #include "nc/move.h"
 

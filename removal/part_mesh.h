@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/geometry.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 
 namespace camber::removal {
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "base/freed_memory.h"
+#include "base/process_memory.h"
 #include "base/stage.h"
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"

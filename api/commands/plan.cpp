@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/folders.h"
 #include "base/output_file.h"
-#include "base/temporary_folder.h"
 #include "feedmodel/control_options.h"
 #include "machine/machine_presets.h"
 #include "nc/dialect.h"

@@ -6,8 +6,8 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include "base/free_memory.h"
-#include "base/stl.h"
+#include "base/process_memory.h"
+#include "base/triangle_mesh.h"
 #include "removal/field/mesh_memory.h"
 #include "removal/part_mesh.h"
 

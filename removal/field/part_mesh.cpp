@@ -14,7 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "base/diagnostics.h"
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 
 namespace camber::removal {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "machine/workpiece.h"
 
 namespace camber::tests {

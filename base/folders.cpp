@@ -1,6 +1,8 @@
-#include "base/confined_files.h"
+#include "base/folders.h"
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 
@@ -60,6 +62,19 @@ void confine_files(const std::string& folder) {
 void require_confined(const std::string& path) {
   if (!confined_to || begins_with(resolved(path), *confined_to)) return;
   fail_on_file(path, fmt::format("lies outside {}; a file in that folder was expected", *confined_to), "file-outside");
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::error_code none;
+  path_ = (std::filesystem::temp_directory_path(none) / "camber-XXXXXX").string();
+  if (mkdtemp(path_.data()) == nullptr)
+    fail_on_file(path_, fmt::format("the folder for intermediate files cannot be made: {}", std::strerror(errno)),
+                 "output");
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code left;
+  std::filesystem::remove_all(path_, left);
 }
 
 }  // namespace camber

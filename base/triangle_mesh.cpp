@@ -1,7 +1,8 @@
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -128,5 +129,24 @@ TriangleMesh read_stl(const std::string& path) {
   if (mesh.triangles.empty()) fail_on_file(path, "has no triangle", "stl-empty");
   return mesh;
 }
+
+bool is_step_file(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos) return false;
+  std::string end = path.substr(dot + 1);
+  std::ranges::transform(end, end.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return end == "step" || end == "stp";
+}
+
+TriangleMesh read_mesh(const std::string& path) { return is_step_file(path) ? read_step(path) : read_stl(path); }
+
+#ifndef CAMBER_OPENCASCADE
+TriangleMesh read_step(const std::string& path) {
+  fail_on_file(path,
+               "this build does not read STEP files; an STL file was expected, or a build configured with "
+               "-DCAMBER_OPENCASCADE=ON (scripts/install-packages --step installs Open CASCADE)",
+               "step-not-built");
+}
+#endif
 
 }  // namespace camber

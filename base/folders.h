@@ -16,4 +16,17 @@ void require_confined(const std::string& path);
 /// Whether `path`, all links resolved, is `folder` or lies below it.
 bool lies_below(const std::string& folder, const std::string& path);
 
+class TemporaryFolder {
+ public:
+  /// Throws InputError [output] where none can be made.
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 }  // namespace camber

@@ -1,9 +1,14 @@
-#include "base/free_memory.h"
+#include "base/process_memory.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <string>
+
+#include <malloc.h>
+
+#endif
 
 namespace camber {
 namespace {
@@ -58,5 +63,11 @@ double free_memory_bytes() {
 }
 
 double used_memory_bytes() { return 1024 * entry_of("/proc/self/status", "VmRSS:"); }
+
+void return_freed_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
 
 }  // namespace camber

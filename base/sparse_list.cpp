@@ -1,4 +1,4 @@
-#include "base/address_room.h"
+#include "base/sparse_list.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
