@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#if defined(__GLIBC__)
 #include <malloc.h>
-
 #endif
 
 namespace camber {

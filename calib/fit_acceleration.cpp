@@ -141,11 +141,10 @@ std::optional<FittedValue> ramp_time_s(const std::vector<FeedRun>& runs, const m
 namespace {
 
 constexpr double kRestS = 0.02;
-constexpr double kLookS = 0.4;          // after a start
-constexpr double kMovesMm = 0.001;      // over the look
+constexpr double kRiseMovesMm = 0.001;  // over the look
 constexpr std::size_t kHalfWindow = 4;  // periods; a speed difference is taken over twice as many
 constexpr double kFallen = 0.7;         // of the greatest acceleration: it is over
-constexpr std::size_t kFewestStarts = 3;
+constexpr std::size_t kFewestRises = 3;
 
 /// Acceleration along the path at every sample of [first, end), of the commanded positions.
 std::vector<double> accelerations(const ServoTrace& trace, std::size_t first, std::size_t end) {
@@ -194,8 +193,8 @@ void add_starts(const ServoTrace& trace, std::vector<double>& rises) {
         ++still;
         continue;
       }
-      const bool starts =
-          still >= rest && k > s.first + rest && (trace.command_mm[k + look] - trace.command_mm[k]).norm() > kMovesMm;
+      const bool starts = still >= rest && k > s.first + rest &&
+                          (trace.command_mm[k + look] - trace.command_mm[k]).norm() > kRiseMovesMm;
       still = 0;
       if (!starts) continue;
       const std::size_t from = k - std::min(k - s.first - kHalfWindow, 2 * kHalfWindow);
@@ -209,7 +208,7 @@ void add_starts(const ServoTrace& trace, std::vector<double>& rises) {
 std::optional<FittedValue> smoothing_time_s(const std::vector<const ServoTrace*>& traces) {
   std::vector<double> rises;
   for (const ServoTrace* trace : traces) add_starts(*trace, rises);
-  if (rises.size() < kFewestStarts) return std::nullopt;
+  if (rises.size() < kFewestRises) return std::nullopt;
   std::sort(rises.begin(), rises.end());
   const double value = rises[rises.size() * 3 / 4];
   if (value <= 2 * kHalfWindow * traces.front()->period_s) return std::nullopt;

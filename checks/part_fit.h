@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "machine/job_file.h"
-#include "removal/part_mesh.h"
+#include "removal/form_error.h"
 #include "simulate/predict.h"
 
 namespace camber::checks {

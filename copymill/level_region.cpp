@@ -15,6 +15,14 @@ namespace {
 
 using Segment = std::array<Vec2, 2>;
 
+double distance_mm(const Segment& segment, const Vec2& p) {
+  const Vec2 along = segment[1] - segment[0];
+  const double t =
+      along.squaredNorm() > 0 ? std::clamp((p - segment[0]).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
+  return (p - segment[0] - t * along).norm();
+}
+
+/// Nearest segment and its distance, for each point of a grid.
 class Sweeper {
  public:
   Sweeper(const Grid& grid, const std::vector<Segment>& segments)
@@ -65,13 +73,6 @@ class Sweeper {
   std::vector<int> nearest_;
   std::vector<float> distance_;
 };
-
-double distance_mm(const Segment& segment, const Vec2& p) {
-  const Vec2 along = segment[1] - segment[0];
-  const double t =
-      along.squaredNorm() > 0 ? std::clamp((p - segment[0]).dot(along) / along.squaredNorm(), 0.0, 1.0) : 0;
-  return (p - segment[0] - t * along).norm();
-}
 
 /// Each point tries the segments that its neighbours have found nearest, in four sweeps to and fro; beside the
 /// segments the distance is exact, farther away the nearest segment may be missed by another that is as near but for

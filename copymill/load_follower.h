@@ -6,7 +6,7 @@
 #include "copymill/load_rule.h"
 #include "machine/copy_operations.h"
 #include "machine/job_file.h"
-#include "removal/step_engagement.h"
+#include "removal/engagement.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/load_probe.h"

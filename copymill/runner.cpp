@@ -9,7 +9,7 @@
 
 #include "base/units.h"
 #include "feedmodel/control_options.h"
-#include "removal/tile_size.h"
+#include "removal/stock.h"
 
 namespace camber::copymill {
 namespace {

@@ -2,7 +2,6 @@
 // Machine and control, read from machine.toml. A missing limit is no limit (infinity).
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "machine/control_kind.h"
 #include "machine/cycle.h"
 #include "machine/kinematics.h"
+#include "machine/number_range.h"
 
 namespace camber::machine {
 
@@ -24,8 +24,6 @@ struct Body {
   std::optional<std::array<Vec3, 2>> box_mm{};  ///< least and greatest corner
   std::string mesh{};                           ///< STL file, absolute; empty: a box
 };
-
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 enum class CornerLaw {
   speed_difference,  ///< per-axis permitted speed step (Fanuc 1783): F_c = F / max(dV_axis / V_permitted)

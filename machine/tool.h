@@ -1,11 +1,11 @@
 #pragma once
 // A cutter with its shank and holder, and the modes of its tip.
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/geometry.h"
+#include "machine/number_range.h"
 
 namespace camber::machine {
 
@@ -51,14 +51,12 @@ struct Tool {
   bool shear = false;                     ///< include shear deflection (Timoshenko)
   double effective_diameter_ratio = 0.8;  ///< bending diameter of the fluted part / diameter
   double youngs_modulus_MPa = 600000;
-  double root_stiffness_N_per_mm = std::numeric_limits<double>::infinity();  ///< lateral, holder and spindle
-  double root_axial_stiffness_N_per_mm =
-      std::numeric_limits<double>::infinity();  ///< along the axis, holder and spindle
-  double root_rotational_stiffness_Nmm_per_rad =
-      std::numeric_limits<double>::infinity();       ///< about the axes across the tool, at the holder face
+  double root_stiffness_N_per_mm = kNoLimit;                ///< lateral, holder and spindle
+  double root_axial_stiffness_N_per_mm = kNoLimit;          ///< along the axis, holder and spindle
+  double root_rotational_stiffness_Nmm_per_rad = kNoLimit;  ///< about the axes across the tool, at the holder face
   std::optional<double> axial_stiffness_N_per_mm{};  ///< stiffness of the tool along its axis; empty: by its geometry
   std::vector<std::string> typical{};         ///< keys that nobody gave, with the typical values that stand for them
-  std::optional<double> density_kg_per_m3{};  ///< not given: by the modulus (dynamics/beam_modes.h)
+  std::optional<double> density_kg_per_m3{};  ///< not given: by the modulus (dynamics/tool_modes.h)
   std::vector<Mode> modes{};                  ///< measured at the tip; empty: those of its beam
 };
 

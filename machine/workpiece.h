@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "base/geometry.h"
-#include "machine/machine.h"
+#include "machine/number_range.h"
 #include "machine/simulation_settings.h"
 
 namespace camber::machine {

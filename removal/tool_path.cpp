@@ -6,8 +6,6 @@
 
 #include <Eigen/Geometry>
 
-#include "removal/stamp_sink.h"
-
 namespace camber::removal {
 
 using feedmodel::TimedSample;

@@ -4,7 +4,6 @@
 
 #include "machine/job_file.h"
 #include "removal/stock.h"
-#include "removal/stock_part.h"
 
 namespace camber::simulate {
 

@@ -6,7 +6,7 @@
 
 #include "machine/material.h"
 #include "machine/tool.h"
-#include "removal/step_engagement.h"
+#include "removal/engagement.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/cut.h"

@@ -7,7 +7,7 @@
 #include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
-#include "removal/stock_part.h"
+#include "removal/stock.h"
 #include "removal/tool_path.h"
 
 namespace camber::simulate {

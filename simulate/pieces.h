@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "machine/job_file.h"
-#include "removal/stock_part.h"
+#include "removal/stock.h"
 #include "simulate/cut.h"
 #include "simulate/predict.h"
 #include "simulate/section_pieces.h"

@@ -12,7 +12,7 @@
 #include "feedmodel/control_options.h"
 #include "nc/interpreter.h"
 #include "removal/engagement.h"
-#include "removal/nominal_path.h"
+#include "removal/tool_path.h"
 #include "simulate/chatter.h"
 #include "simulate/contour.h"
 #include "simulate/job_checks.h"

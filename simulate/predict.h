@@ -12,7 +12,6 @@
 #include "nc/move.h"
 #include "nc/program.h"
 #include "removal/form_error.h"
-#include "removal/part_mesh.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/chatter_margins.h"

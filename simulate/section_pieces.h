@@ -9,7 +9,7 @@
 
 #include "base/sparse_list.h"
 #include "machine/job_file.h"
-#include "removal/stock_part.h"
+#include "removal/stock.h"
 #include "removal/tool_path.h"
 
 namespace camber::simulate {

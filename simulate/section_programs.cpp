@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "removal/cutter.h"
-#include "removal/nominal_path.h"
-#include "removal/stamp_sink.h"
+#include "removal/tool_path.h"
 
 namespace camber::simulate {
 

@@ -7,8 +7,8 @@
 #include "base/cancel.h"
 #include "base/stage.h"
 #include "removal/engagement.h"
-#include "removal/joined_parts.h"
 #include "removal/known_run.h"
+#include "removal/stock.h"
 #include "simulate/contour.h"
 #include "simulate/section_stock.h"
 

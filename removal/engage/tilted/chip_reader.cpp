@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "removal/engage/thinnest_chip.h"
 #include "removal/engage/upright/level_faces.h"
-#include "removal/field/upright/carve_general.h"
+#include "removal/field/cell.h"
+#include "removal/field/upright/carve.h"
 
 namespace camber::removal::tilted {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "removal/engage/upright/level_faces.h"
-#include "removal/field/upright/carve_general.h"
+#include "removal/field/upright/carve.h"
 #include "removal/simd/upright_block_kernels.h"
 
 namespace camber::removal::upright {

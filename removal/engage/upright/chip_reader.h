@@ -45,6 +45,9 @@ class ChipReader {
              std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
              const BendMemory& memory);
 
+  using Reading = std::size_t;  ///< a stamp's index in the stretch
+  Reading reading_of(std::size_t k) const { return k; }
+
   /// Lists the patches that may take a chip at stamp k.
   void find_patches(const TileArena& arena, std::size_t k, std::vector<std::int32_t>& out) const;
   /// Appends the chips that stamp k takes with the points of these patches. Points that the motion leads into the

@@ -1,4 +1,4 @@
-#include "removal/engage/tilted/engager.h"
+#include "removal/engage/tilted/deflected_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "base/cancel.h"
 #include "base/stage.h"
-#include "removal/engage/glance.h"
+#include "removal/engage/patch_reading.h"
 #include "removal/field/tilted/carve.h"
 #include "removal/field/upright/cut_tiles.h"
 #include "removal/field/upright/tile_arena.h"
@@ -70,38 +70,26 @@ struct Engager::Impl {
   const DeflectionTable* deflections = nullptr;
   std::optional<upright::PatchLanes> lanes{};
   std::optional<ChipReader> reader{};
+  std::optional<PatchReading<ChipReader>> reading{};
   TileArena arena{};
   std::vector<std::optional<CutTile>> tiles{};  ///< by the arena's numbers
   upright::BendMemory memory{};
   double removed_mm3 = 0;  ///< volume removed from tiles that were given back since the last commit
-  std::vector<std::int32_t> patches{};
-  std::vector<char> glanced_point{};
-  std::vector<std::vector<DeflectedChipSample>> chips_of_group{};
-  std::vector<DeflectedChipSample> chips{};
-  tbb::enumerable_thread_specific<ChipReader::Buffers> buffers{};
   std::optional<tbb::enumerable_thread_specific<DeflectedCarver>> carvers{};
   bool keeps = false;            ///< since keep(), in this stretch
   std::vector<KeptTile> kept{};  ///< the first kept_count are in use
   std::size_t kept_count = 0;
   std::vector<char> is_kept{};  ///< by tile of the arena
 
-  Impl(Stock& stock_, const Stock& blank_, EnvelopeGrid envelope_, std::span<const Stamp> stamps_,
-       std::int32_t first_id_, const ReadingRule& rule_)
-      : stock(stock_),
-        blank(blank_),
-        envelope(std::move(envelope_)),
+  Impl(const EngagedRun& run, const ReadingRule& rule_)
+      : stock(run.stock),
+        blank(run.blank),
+        envelope(with_patches(run.envelope, run.stock.band_mm())),
         profile(envelope.shape.profile),
-        all(stamps_),
-        first_id(first_id_),
+        all(run.stamps),
+        first_id(run.first_id),
         rule(rule_) {}
-  void begin(const DeflectionTable& table) {
-    lanes.emplace(envelope, table.node_height_mm, stock.voxel_mm(), stock.band_mm());
-    glanced_point.assign(envelope.size(), 0);
-    for (std::uint32_t patch = 0; patch < envelope.patches.size(); ++patch) {
-      const upright::PatchLanes::Range range = lanes->range(patch);
-      for (int l = 0; glanced_at(patch) && l < range.count; ++l) glanced_point[lanes->point(range.from + l)] = 1;
-    }
-  }
+  void cut(std::size_t k);
   /// The tiles that the stamp may change, as they are before.
   void keep_tiles(std::span<const std::int32_t> reached, const Carving& stamp, const StampDeflection& deflection) {
     for (const std::int32_t number : reached) {
@@ -118,12 +106,10 @@ struct Engager::Impl {
   void leave(std::span<const std::size_t> numbers) { removed_mm3 += upright::store_cut(stock, arena, numbers, tiles); }
 };
 
-Engager::Engager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, std::span<const Stamp> stamps,
-                 std::int32_t first_id, const ReadingRule& rule)
-    : impl_(std::make_unique<Impl>(stock, blank, with_patches(envelope, stock.band_mm()), stamps, first_id, rule)) {}
+Engager::Engager(const EngagedRun& run, const ReadingRule& rule) : impl_(std::make_unique<Impl>(run, rule)) {}
 Engager::~Engager() = default;
 
-void Engager::remember(std::size_t from, std::span<const float> rows, std::size_t row_size) {
+void Engager::remember(std::size_t from, std::span<const float> rows, std::size_t row_size, double) {
   impl_->memory.add_before(from, rows, row_size);
 }
 
@@ -134,7 +120,10 @@ void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& 
   m.deflections = &deflections;
   m.keeps = false;
   if (count == 0) return;
-  if (!m.lanes) m.begin(deflections);
+  if (!m.lanes) {
+    m.lanes.emplace(m.envelope, deflections.node_height_mm, m.stock.voxel_mm(), m.stock.band_mm());
+    m.reading.emplace(m.envelope, *m.lanes);
+  }
   m.way = ways(m.stamps, m.stock.min_mm(), m.stock.max_mm());
   m.arena.load(
       m.stock, &m.blank, m.envelope.shape, m.stamps, [&](auto left) { m.leave(left); },
@@ -146,59 +135,36 @@ void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& 
                    m.rule);
 }
 
-double Engager::glance(std::size_t k) {
-  Impl& m = *impl_;
-  const ChipReader::Reading stamp = m.reader->reading_of(k);
-  m.reader->find_patches(m.arena, stamp, m.patches);
-  std::erase_if(m.patches, [](std::int32_t patch) { return !glanced_at(static_cast<std::uint32_t>(patch)); });
-  m.chips.clear();
-  m.reader->read(m.arena, stamp, m.patches, m.buffers.local(), m.chips);
-  return glance_of(m.chips);
-}
-
-double Engager::glance_of(std::span<const DeflectedChipSample> chips) const {
-  return sum_of_glanced(chips, impl_->glanced_point);
-}
-
 std::span<const DeflectedChipSample> Engager::read(std::size_t k) {
-  constexpr std::size_t kGroup = 32;  // patches that a thread reads at once
-  Impl& m = *impl_;
-  const ChipReader::Reading stamp = m.reader->reading_of(k);
-  m.reader->find_patches(m.arena, stamp, m.patches);
-  const std::size_t groups = (m.patches.size() + kGroup - 1) / kGroup;
-  if (m.chips_of_group.size() < groups) m.chips_of_group.resize(groups);
-  tbb::parallel_for(std::size_t{0}, groups, [&](std::size_t g) {
-    const std::size_t from = g * kGroup, count = std::min(kGroup, m.patches.size() - from);
-    m.chips_of_group[g].clear();
-    m.reader->read(m.arena, stamp, std::span(m.patches).subspan(from, count), m.buffers.local(), m.chips_of_group[g]);
-  });
-  m.chips.clear();
-  for (std::size_t g = 0; g < groups; ++g)
-    m.chips.insert(m.chips.end(), m.chips_of_group[g].begin(), m.chips_of_group[g].end());
-  return m.chips;
+  return impl_->reading->read(*impl_->reader, impl_->arena, k);
 }
 
-void Engager::cut(std::size_t k) {
-  Impl& m = *impl_;
+std::span<const double> Engager::glance(std::size_t k, std::size_t count) {
+  return impl_->reading->glance(*impl_->reader, impl_->arena, k, count);
+}
+
+double Engager::glance_of(std::span<const DeflectedChipSample> chips) const { return impl_->reading->glance_of(chips); }
+
+void Engager::Impl::cut(std::size_t k) {
   const auto row = static_cast<std::ptrdiff_t>(k);
-  const StampDeflection deflection = m.rule.rigid ? StampDeflection{m.deflections->row(row), 0, {}}
-                                                  : StampDeflections(m.envelope, *m.deflections).of(row);
-  if (!m.memory.knows(static_cast<std::int32_t>(m.from + k))) m.memory.add(m.deflections->row(row));
-  const Frame frame(m.stamps[k].pose);
-  const Carving stamp{m.envelope.shape,
-                      m.profile,
-                      frame,
-                      m.stock.voxel_mm(),
-                      m.stock.band_mm(),
-                      m.first_id + static_cast<std::int32_t>(m.from + k),
-                      m.way[k]};
-  const auto reached = m.arena.reached_by(k);
-  if (m.keeps) m.keep_tiles(reached, stamp, deflection);
+  const StampDeflection deflection =
+      rule.rigid ? StampDeflection{deflections->row(row), 0, {}} : StampDeflections(envelope, *deflections).of(row);
+  if (!memory.knows(static_cast<std::int32_t>(from + k))) memory.add(deflections->row(row));
+  const Frame frame(stamps[k].pose);
+  const Carving stamp{
+      envelope.shape, profile, frame, stock.voxel_mm(), stock.band_mm(), first_id + static_cast<std::int32_t>(from + k),
+      way[k]};
+  const auto reached = arena.reached_by(k);
+  if (keeps) keep_tiles(reached, stamp, deflection);
   tbb::parallel_for(std::size_t{0}, reached.size(), [&](std::size_t i) {
     const auto t = static_cast<std::size_t>(reached[i]);
-    CutTile& tile = *m.tiles[t];
-    tile.changed |= m.carvers->local().carve(m.arena[t], tile.rows, m.arena.index(t), stamp, deflection);
+    CutTile& tile = *tiles[t];
+    tile.changed |= carvers->local().carve(arena[t], tile.rows, arena.index(t), stamp, deflection);
   });
+}
+
+void Engager::cut(std::size_t k, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) impl_->cut(k + i);
 }
 
 void Engager::keep() {
@@ -221,6 +187,10 @@ double Engager::commit() {
   Impl& m = *impl_;
   m.arena.clear([&](auto left) { m.leave(left); });
   return std::exchange(m.removed_mm3, 0.0);
+}
+
+std::unique_ptr<DeflectedPath> deflected_path(const EngagedRun& run) {
+  return std::make_unique<Engager>(run, ReadingRule{});
 }
 
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options) {

@@ -1,4 +1,4 @@
-#include "removal/nominal_path.h"
+#include "removal/tool_path.h"
 
 #include <algorithm>
 #include <cmath>

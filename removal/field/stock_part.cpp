@@ -1,9 +1,11 @@
-#include "removal/stock_part.h"
+#include "removal/stock.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include <tbb/parallel_for.h>
 
@@ -238,6 +240,27 @@ double largest_difference_mm(const Stock& a, const Stock& b, const Region& regio
   float out = 0;
   for (const float v : largest) out = std::max(out, v);
   return static_cast<double>(out);
+}
+
+void JoinedParts::add(StockPart part) {
+  groups_.push_back({std::move(part)});
+  while (groups_.size() > 1 && groups_[groups_.size() - 2].of == groups_.back().of) join_last_two();
+}
+
+StockPart JoinedParts::take() {
+  if (groups_.empty()) return {};
+  while (groups_.size() > 1) join_last_two();
+  StockPart out = std::move(groups_.back().part);
+  groups_.clear();
+  return out;
+}
+
+void JoinedParts::join_last_two() {
+  Group& first = groups_[groups_.size() - 2];
+  const std::array<const StockPart*, 2> both{&first.part, &groups_.back().part};
+  StockPart joined(both);
+  first = {std::move(joined), first.of + groups_.back().of};
+  groups_.pop_back();
 }
 
 }  // namespace camber::removal
