@@ -52,23 +52,22 @@ Vec3 vec(const CellShare& share) {
 
 }  // namespace
 
-ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
-                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm,
+ChipReader::ChipReader(const EngagedRun& run, const upright::PatchLanes& lanes, std::span<const Stamp> stamps,
                        const DeflectionTable& deflections, const upright::BendMemory& memory, const ReadingRule& rule)
-    : envelope_(envelope),
+    : envelope_(run.envelope),
       lanes_(lanes),
       view_(lanes.view()),
-      all_(all),
+      all_(run.stamps),
       stamps_(stamps),
-      first_id_(first_id),
-      voxel_mm_(voxel_mm),
+      first_id_(run.first_id),
+      voxel_mm_(run.stock.voxel_mm()),
       deflections_(deflections),
       memory_(memory),
       rule_(rule),
       kernels_(upright::kernels()),
       node_step_mm_(deflections.nodes() > 1 ? as_float(deflections.node_height_mm[1]) : 1.0f),
-      wall_half_mm_(upright::wall_half_widths_mm(envelope)) {
-  for (const auto& ring : envelope.rings)
+      wall_half_mm_(upright::wall_half_widths_mm(run.envelope)) {
+  for (const auto& ring : run.envelope.rings)
     max_curved_per_mm_ =
         std::max({max_curved_per_mm_, ring.profile.meridian_curvature_per_mm, ring.profile.parallel_curvature_per_mm});
 }

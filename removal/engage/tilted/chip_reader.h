@@ -8,6 +8,7 @@
 
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
+#include "removal/engage/engaged_path.h"
 #include "removal/engage/upright/bend_memory.h"
 #include "removal/engage/upright/patch_lanes.h"
 #include "removal/engagement.h"
@@ -57,9 +58,8 @@ class ChipReader {
   };
 
   /// Parameters: see upright::ChipReader. `rule` says what counts as a chip.
-  ChipReader(const EnvelopeGrid& envelope, const upright::PatchLanes& lanes, std::span<const Stamp> all,
-             std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
-             const upright::BendMemory& memory, const ReadingRule& rule);
+  ChipReader(const EngagedRun& run, const upright::PatchLanes& lanes, std::span<const Stamp> stamps,
+             const DeflectionTable& deflections, const upright::BendMemory& memory, const ReadingRule& rule);
 
   /// A stamp that is read.
   struct Reading {

@@ -57,12 +57,9 @@ EnvelopeGrid with_patches(const EnvelopeGrid& envelope, double band_mm) {
 }  // namespace
 
 struct Engager::Impl {
-  Stock& stock;
-  const Stock& blank;
   EnvelopeGrid envelope;
+  EngagedRun run;  ///< with that envelope
   ProfileRows profile;
-  std::span<const Stamp> all;
-  std::int32_t first_id;
   ReadingRule rule;
   std::size_t from = 0;             ///< its first stamp
   std::span<const Stamp> stamps{};  ///< stamps of the stretch
@@ -81,13 +78,10 @@ struct Engager::Impl {
   std::size_t kept_count = 0;
   std::vector<char> is_kept{};  ///< by tile of the arena
 
-  Impl(const EngagedRun& run, const ReadingRule& rule_)
-      : stock(run.stock),
-        blank(run.blank),
-        envelope(with_patches(run.envelope, run.stock.band_mm())),
+  Impl(const EngagedRun& run_, const ReadingRule& rule_)
+      : envelope(with_patches(run_.envelope, run_.stock.band_mm())),
+        run{run_.stock, run_.blank, envelope, run_.stamps, run_.first_id},
         profile(envelope.shape.profile),
-        all(run.stamps),
-        first_id(run.first_id),
         rule(rule_) {}
   void cut(std::size_t k);
   /// The tiles that the stamp may change, as they are before.
@@ -103,7 +97,9 @@ struct Engager::Impl {
       ++kept_count;
     }
   }
-  void leave(std::span<const std::size_t> numbers) { removed_mm3 += upright::store_cut(stock, arena, numbers, tiles); }
+  void leave(std::span<const std::size_t> numbers) {
+    removed_mm3 += upright::store_cut(run.stock, arena, numbers, tiles);
+  }
 };
 
 Engager::Engager(const EngagedRun& run, const ReadingRule& rule) : impl_(std::make_unique<Impl>(run, rule)) {}
@@ -116,23 +112,22 @@ void Engager::remember(std::size_t from, std::span<const float> rows, std::size_
 void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
   Impl& m = *impl_;
   m.from = from;
-  m.stamps = m.all.subspan(from, count);
+  m.stamps = m.run.stamps.subspan(from, count);
   m.deflections = &deflections;
   m.keeps = false;
   if (count == 0) return;
   if (!m.lanes) {
-    m.lanes.emplace(m.envelope, deflections.node_height_mm, m.stock.voxel_mm(), m.stock.band_mm());
+    m.lanes.emplace(m.envelope, deflections.node_height_mm, m.run.stock.voxel_mm(), m.run.stock.band_mm());
     m.reading.emplace(m.envelope, *m.lanes);
   }
-  m.way = ways(m.stamps, m.stock.min_mm(), m.stock.max_mm());
+  m.way = ways(m.stamps, m.run.stock.min_mm(), m.run.stock.max_mm());
   m.arena.load(
-      m.stock, &m.blank, m.envelope.shape, m.stamps, [&](auto left) { m.leave(left); },
+      m.run.stock, &m.run.blank, m.envelope.shape, m.stamps, [&](auto left) { m.leave(left); },
       m.rule.rigid ? 0 : DeflectedEngager::kMaxDeflection_mm);
-  load_cut(m.stock, m.arena, m.tiles);
+  load_cut(m.run.stock, m.arena, m.tiles);
   m.memory.begin(deflections.row_size(), from);
   m.carvers.emplace(DeflectedCarver(m.envelope, deflections));
-  m.reader.emplace(m.envelope, *m.lanes, m.all, m.stamps, m.first_id, m.stock.voxel_mm(), deflections, m.memory,
-                   m.rule);
+  m.reader.emplace(m.run, *m.lanes, m.stamps, deflections, m.memory, m.rule);
 }
 
 std::span<const DeflectedChipSample> Engager::read(std::size_t k) {
@@ -151,9 +146,13 @@ void Engager::Impl::cut(std::size_t k) {
       rule.rigid ? StampDeflection{deflections->row(row), 0, {}} : StampDeflections(envelope, *deflections).of(row);
   if (!memory.knows(static_cast<std::int32_t>(from + k))) memory.add(deflections->row(row));
   const Frame frame(stamps[k].pose);
-  const Carving stamp{
-      envelope.shape, profile, frame, stock.voxel_mm(), stock.band_mm(), first_id + static_cast<std::int32_t>(from + k),
-      way[k]};
+  const Carving stamp{envelope.shape,
+                      profile,
+                      frame,
+                      run.stock.voxel_mm(),
+                      run.stock.band_mm(),
+                      run.first_id + static_cast<std::int32_t>(from + k),
+                      way[k]};
   const auto reached = arena.reached_by(k);
   if (keeps) keep_tiles(reached, stamp, deflection);
   tbb::parallel_for(std::size_t{0}, reached.size(), [&](std::size_t i) {

@@ -96,7 +96,7 @@ void UprightDeflectedPath::start(std::size_t from, std::size_t count, const Defl
       [&](std::size_t t) -> const ColumnCover& { return tiles_[t]->cover; });
   memory_.begin(deflections.row_size(), from);
   bends_.emplace(envelope, deflections);
-  reader_.emplace(envelope, *lanes_, run_.stamps, stamps_, run_.first_id, run_.stock.voxel_mm(), deflections, memory_);
+  reader_.emplace(run_, *lanes_, stamps_, deflections, memory_);
 }
 
 void UprightDeflectedPath::list_group(std::size_t k, std::size_t count) {
