@@ -11,7 +11,7 @@
 namespace camber {
 namespace {
 
-PlannedOperation operation_of(const plan::Operation& o, std::size_t setup) {
+PlannedOperation operation_of(const plan::PlanOperation& o, std::size_t setup) {
   const plan::Conditions& c = o.conditions;
   return {.setup = setup,
           .primitive = o.primitive,
@@ -46,7 +46,7 @@ PlanResult result_of(const plan::PlanResult& planned) {
                                 p.complete(), i == first.best});
   }
   for (std::size_t s = 0; s < planned.setups.size(); ++s)
-    for (const plan::Operation& o : planned.setups[s].plans[planned.setups[s].best].operations)
+    for (const plan::PlanOperation& o : planned.setups[s].plans[planned.setups[s].best].operations)
       out.operations.push_back(operation_of(o, s));
   return out;
 }

@@ -48,7 +48,7 @@ Samples planned_samples(const nc::Interpretation& program, const machine::Machin
 }
 
 /// First sample of each part that begins after a rest; parts in the order of their lines.
-std::vector<std::size_t> starts_of(const std::vector<std::uint32_t>& line, const std::vector<Part>& parts) {
+std::vector<std::size_t> starts_of(const std::vector<std::uint32_t>& line, const std::vector<TracePart>& parts) {
   std::vector<std::size_t> starts(parts.size(), 0);
   std::size_t k = 1;
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -64,7 +64,7 @@ std::vector<std::size_t> starts_of(const std::vector<std::uint32_t>& line, const
 void add_starts(const FeedRun& run, const machine::Machine& machine, int axis, std::vector<Start>& out) {
   if (run.trace.line.empty() || !run.trace.has_command[static_cast<std::size_t>(axis)]) return;
   const Samples planned = planned_samples(run.program, machine, axis);
-  const std::vector<Part> parts = parts_of(run.program, machine);
+  const std::vector<TracePart> parts = parts_of(run.program, machine);
   const auto in_plan = starts_of(planned.line, parts), in_trace = starts_of(run.trace.line, parts);
   const auto look = static_cast<std::size_t>(kLookS / run.trace.period_s);
   const double step = run.trace.period_s / machine.control.period_s;  // of a sample of the trace, in periods

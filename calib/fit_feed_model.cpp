@@ -89,7 +89,7 @@ bool moves_at(const ServoTrace& trace, std::size_t k) {
 }
 
 /// Commanded time of each part: first to last sample of its lines.
-std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<Part>& parts) {
+std::vector<double> traced_times_s(const ServoTrace& trace, const std::vector<TracePart>& parts) {
   std::vector<double> times(parts.size(), 0.0);
   std::size_t k = 0;
   const std::size_t n = trace.line.size();
@@ -126,16 +126,16 @@ void add_pieces(const FeedRun& run, TimedLines& lines) {
   constexpr std::size_t kKeepBackEvery = 3;
   TimedLines out;
   for (std::size_t p = 0; p < lines.parts.size(); ++p) {
-    const Part& part = lines.parts[p];
+    const TracePart& part = lines.parts[p];
     const std::uint32_t count = part.line_last - part.line_first + 1;
-    std::vector<Part> pieces{part};
+    std::vector<TracePart> pieces{part};
     if (lines.time_s[p] == 0 && count >= kPieces) {
       pieces.clear();
       for (std::uint32_t i = 0; i < kPieces; ++i)
         pieces.push_back({part.line_first + count * i / kPieces, part.line_first + count * (i + 1) / kPieces - 1,
                           part.feed_mm_per_s});
     }
-    for (const Part& piece : pieces) {
+    for (const TracePart& piece : pieces) {
       const bool whole = pieces.size() == 1;
       out.parts.push_back(piece);
       out.kept_back.push_back(whole ? lines.kept_back[p] : static_cast<char>(out.parts.size() % kKeepBackEvery == 0));
@@ -164,7 +164,7 @@ void add_timed_lines(const FeedRun& run, const Machine& machine, int keep_back_e
       if (l < feeds.size() && feeds[l].turns) return true;
     return false;
   };
-  for (const Part& part : parts_of(run.program, machine)) {
+  for (const TracePart& part : parts_of(run.program, machine)) {
     const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
     const bool by_block = part.line_last - part.line_first < kMaxBlocksApart && part.line_last > part.line_first;
     for (std::uint32_t line = part.line_first; by_block && line <= part.line_last; ++line) {
@@ -495,12 +495,12 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
   std::vector<double> true_s, predicted_s;  // of the parts held out
   std::size_t count = 0;
   for (const FeedRun& run : runs) {
-    const std::vector<Part> parts = parts_of(run.program, result.machine);
+    const std::vector<TracePart> parts = parts_of(run.program, result.machine);
     RunAccuracy accuracy{run.program_name, feed_accuracy(run.trace, run.program, result.machine, parts,
                                                          {.kept_stations = kKeptStations})};
     if (!run.trace.line.empty()) {
       std::size_t seen = 0;
-      for (const Part& part : parts) {
+      for (const TracePart& part : parts) {
         const bool kept_back = ++count % static_cast<std::size_t>(keep_back_every) == 0;
         if (seen == accuracy.accuracy.parts.size()) continue;
         const PartAccuracy& a = accuracy.accuracy.parts[seen];

@@ -70,7 +70,7 @@ struct JudgedCornerLaw {
 /// A stretch that a log or a table has the time of.
 struct LoggedTime {
   std::string program_name;
-  Part part;
+  TracePart part;
   bool kept_back = false;
   double time_s = 0, sigma_s = 0, model_s = 0;
 };

@@ -15,7 +15,7 @@ namespace camber::calib {
 /// A stretch of lines whose commanded time is known.
 struct TimedLines {
   const nc::Interpretation* program = nullptr;
-  std::vector<Part> parts;
+  std::vector<TracePart> parts;
   std::vector<double> time_s;   ///< of each part; 0: not in the trace
   std::vector<char> kept_back;  ///< of each part
   std::vector<int> group;       ///< of each part: what lies within one part of the program errs together

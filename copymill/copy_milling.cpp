@@ -65,13 +65,13 @@ struct Tooling {
   }
   const TipField& roughing() const { return field ? *field : *contact; }
 
-  Cut cut;
+  OperationCut cut;
   AxisRegion region;
   double lowest_mm, highest_mm;
   std::optional<TipField> contact, field;  ///< fields without and with the allowance; none for holes
 };
 
-[[noreturn]] void fail_on_no_place(const Cut& cut) {
+[[noreturn]] void fail_on_no_place(const OperationCut& cut) {
   Diagnostic none = cut.operation.place;
   none.message = fmt::format(
       "T{} with a diameter of {:g} mm and an allowance of {:g} mm has no place in the region; a "
@@ -83,7 +83,7 @@ struct Tooling {
 
 void run_operation(const TriangleMesh& part, const Tooling& tooling, removal::Stock& stock, Runner& runner,
                    double safe_z, CopyResult& result) {
-  const Cut& cut = tooling.cut;
+  const OperationCut& cut = tooling.cut;
   Standing standing(stock, standing_cell_mm(stock, cut.tool), stock.min_mm().z());
   bool placed = true;
   std::optional<PathDepth> depth;

@@ -67,7 +67,7 @@ double along(const Vec3& limits, const Vec3& direction) {
 
 }  // namespace
 
-Motion::Motion(const machine::Machine& machine) : period_s_(machine.control.period_s) {
+FeedMotion::Motion(const machine::Machine& machine) : period_s_(machine.control.period_s) {
   for (int a = 0; a < 3; ++a) {
     const machine::Axis& axis = machine.axis[static_cast<std::size_t>(a)];
     velocity_limit_[a] = std::min({axis.max_velocity_mm_per_s, axis.max_feed_mm_per_s, kFastest});
@@ -80,7 +80,7 @@ Motion::Motion(const machine::Machine& machine) : period_s_(machine.control.peri
   settled_ = window_.size();
 }
 
-void Motion::place(const Vec3& tip) {
+void FeedMotion::place(const Vec3& tip) {
   ideal_ = tip_ = tip;
   std::ranges::fill(window_, tip);
   settled_ = window_.size();
@@ -89,12 +89,12 @@ void Motion::place(const Vec3& tip) {
   piece_ = 0;
 }
 
-double Motion::corner_speed(const PathPiece& before, const PathPiece& behind) const {
+double FeedMotion::corner_speed(const PathPiece& before, const PathPiece& behind) const {
   const Vec3 turn = behind.direction(0) - before.direction(before.length_mm);
   return along(kCornerShare * smoothing_s() * acceleration_limit_, turn);
 }
 
-void Motion::plan() {
+void FeedMotion::plan() {
   const std::size_t n = path_.size();
   from_mm_.assign(n + 1, 0);
   entry_.assign(n + 1, 0);
@@ -117,7 +117,7 @@ void Motion::plan() {
   acceleration_ *= kAlongShare;
 }
 
-void Motion::start(std::vector<PathPiece> path, bool rapid) {
+void FeedMotion::start(std::vector<PathPiece> path, bool rapid) {
   path_ = std::move(path);
   std::erase_if(path_, [](const PathPiece& p) { return p.length_mm <= 0; });
   rapid_ = rapid;
@@ -127,7 +127,7 @@ void Motion::start(std::vector<PathPiece> path, bool rapid) {
   plan();
 }
 
-void Motion::advance(double mm) {
+void FeedMotion::advance(double mm) {
   along_ += mm;
   while (!done() && along_ >= path_[piece_].length_mm - 1e-9) {
     ideal_ = path_[piece_].to;
@@ -137,7 +137,7 @@ void Motion::advance(double mm) {
   if (!done()) ideal_ = path_[piece_].at(along_);
 }
 
-void Motion::tick(double wanted, const SpeedLimit& further) {
+void FeedMotion::tick(double wanted, const SpeedLimit& further) {
   if (!done()) {
     const double here = from_mm_[piece_] + along_;
     const double horizon = here + stopping_mm() + 2 * (speed_ + acceleration_ * period_s_) * period_s_;
@@ -162,7 +162,7 @@ void Motion::tick(double wanted, const SpeedLimit& further) {
   tip_ = sum / static_cast<double>(window_.size());
 }
 
-Motion::Ahead Motion::ahead(double distance) const {
+FeedMotion::Ahead FeedMotion::ahead(double distance) const {
   std::size_t k = piece_;
   double at = along_ + distance;
   while (k < path_.size() && at > path_[k].length_mm) at -= path_[k++].length_mm;

@@ -37,11 +37,11 @@ double acceleration_along(const machine::Machine& machine, const Vec3& direction
 /// Moves along a chain of pieces from rest to rest. Speeds are such that the axes' accelerations hold: half of the
 /// smallest along the path, 0.7 of it in arcs, and 0.45 of it at corners, whose change of velocity a moving average
 /// spreads over smoothing_s(). The average takes the tip off the path by kSmoothing_mm at most.
-class Motion {
+class FeedMotion {
  public:
   static constexpr double kSmoothing_mm = 0.002;
 
-  explicit Motion(const machine::Machine& machine);
+  explicit FeedMotion(const machine::Machine& machine);
 
   /// Requires a path that begins where the last one ended.
   void start(std::vector<PathPiece> path, bool rapid);

@@ -68,7 +68,7 @@ struct LoadBand {
   double lowest_depth = 0.25;            ///< fraction of the nominal depths
 };
 
-struct Conditions {
+struct LoadConditions {
   double feed_mm_per_s = 0, radial_mm = 0, axial_mm = 0;
 };
 
@@ -112,11 +112,11 @@ class LoadRule {
  public:
   static constexpr double kRemembered = 1.06;
 
-  LoadRule(const LoadBand& band, const Conditions& nominal);
+  LoadRule(const LoadBand& band, const LoadConditions& nominal);
 
   void feel(const Felt& passing);
   /// Feed for the next tick; radial depth for the next row, axial depth for the next level.
-  const Conditions& conditions() const { return now_; }
+  const LoadConditions& conditions() const { return now_; }
   /// True after a depth has fallen: the tool has to leave the cut and go on with conditions(). Until replanned().
   bool replan() const { return replan_; }
   void replanned();
@@ -149,10 +149,10 @@ class LoadRule {
   void follow_depths(const Felt& passing);
   bool lower_a_depth(const Felt& passing, double share);
   bool raise_a_depth(const Felt& passing, double share_at_nominal);
-  void set(double Conditions::*what, double to, Cause cause, const Felt& passing, double share);
+  void set(double LoadConditions::*what, double to, Cause cause, const Felt& passing, double share);
 
   LoadBand band_;
-  Conditions nominal_, now_;
+  LoadConditions nominal_, now_;
   std::deque<Passing> turn_;                                           ///< the last passings in material
   int air_ = 0, since_step_ = 0, over_at_lowest_ = 0, with_room_ = 0;  ///< passings
   double hardness_ = 1;

@@ -235,7 +235,7 @@ AdaptSettings read_adapt(TomlTable table) {
   return out;
 }
 
-void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool>& tools, Part& part) {
+void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool>& tools, PartDescription& part) {
   part.mesh = file_at(table, "mesh", folder);
   part.program = file_at(table, "program", folder);
   if (const auto operations = table.table("operations")) part.operations = read_operations(*operations, tools);

@@ -27,7 +27,7 @@ struct Job {
   std::map<int, Tool> tools;
   Material material;
   StockDescription stock;
-  Part part;
+  PartDescription part;
   Simulation simulation;
   /// An error without a message where voxel_mm stands, or else [stock]: what is said of memory points there.
   Diagnostic voxel_place;

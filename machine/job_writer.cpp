@@ -75,7 +75,7 @@ std::string operations_text(const std::string& name, const Operations& operation
   return operations.comments.empty() ? out : out + toml_line("comments", operations.comments);
 }
 
-std::string part_text(const Part& part) {
+std::string part_text(const PartDescription& part) {
   if (part.mesh.empty() && part.program.empty() && !part.operations && !part.judged) return {};
   std::string out = "\n[part]\n";
   if (!part.mesh.empty()) out += toml_line("mesh", part.mesh);

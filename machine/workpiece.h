@@ -42,7 +42,7 @@ struct StockDescription {
   double allowance_mm = 0;  ///< > 0: the blank was already cut by this program with the cutter reduced by this much
 };
 
-struct Part {
+struct PartDescription {
   std::string mesh;                      ///< STL; empty: none
   std::string program;                   ///< NC program that is the target; empty: the job's own
   std::optional<Operations> operations;  ///< operations of the target program; not given: the job's operations

@@ -37,7 +37,7 @@ std::optional<Circle> fit_circle(const std::vector<Vec2>& points) {
 }
 
 /// Groups of upright triangles, joined over edges at which the wall turns little.
-std::vector<std::vector<std::uint32_t>> smooth_walls(const Solid& solid, const MeshEdges& edges,
+std::vector<std::vector<std::uint32_t>> smooth_walls(const TriangleSolid& solid, const MeshEdges& edges,
                                                      const std::vector<Vec3>& normals) {
   std::vector<std::vector<std::uint32_t>> out;
   std::vector<bool> seen(solid.triangles.size(), false);
@@ -79,7 +79,7 @@ struct Rim {
 };
 
 /// The closed loops of edges at which a wall ends; none where a loop does not close.
-std::vector<Rim> rims_of(const Solid& solid, const MeshEdges& edges, const std::vector<std::uint32_t>& wall) {
+std::vector<Rim> rims_of(const TriangleSolid& solid, const MeshEdges& edges, const std::vector<std::uint32_t>& wall) {
   std::vector<bool> inside(solid.triangles.size(), false);
   for (const std::uint32_t t : wall) inside[t] = true;
   std::map<std::uint32_t, std::array<std::uint32_t, 2>> from;  // first corner: second corner, triangle beyond
@@ -112,7 +112,7 @@ std::vector<Rim> rims_of(const Solid& solid, const MeshEdges& edges, const std::
 
 class HoleFinder {
  public:
-  HoleFinder(const Solid& solid, const MeshEdges& edges, const FaceOptions& options)
+  HoleFinder(const TriangleSolid& solid, const MeshEdges& edges, const FaceOptions& options)
       : solid_(solid), edges_(edges), options_(options) {
     out_.of_hole.assign(solid.triangles.size(), false);
     for (std::size_t t = 0; t < solid.triangles.size(); ++t) normals_.push_back(unit_normal(solid, t));
@@ -232,7 +232,7 @@ class HoleFinder {
   /// Caps face out of the filled solid, wall and bottom into the hole.
   double enclosed(const std::vector<std::uint32_t>& wall, const std::vector<std::uint32_t>& bottom,
                   const std::vector<Triangle>& caps) const {
-    Solid plug;
+    TriangleSolid plug;
     plug.points = solid_.points;
     plug.points.insert(plug.points.end(), out_.new_points.begin(), out_.new_points.end());
     plug.triangles = caps;
@@ -244,7 +244,7 @@ class HoleFinder {
     return plan::volume_mm3(plug);
   }
 
-  const Solid& solid_;
+  const TriangleSolid& solid_;
   const MeshEdges& edges_;
   const FaceOptions& options_;
   std::vector<Vec3> normals_;
@@ -253,7 +253,7 @@ class HoleFinder {
 
 }  // namespace
 
-Vec3 unit_normal(const Solid& solid, std::size_t triangle) {
+Vec3 unit_normal(const TriangleSolid& solid, std::size_t triangle) {
   const Vec3 n = solid.normal_by_area(solid.triangles[triangle]);
   const double length = n.norm();
   return length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
@@ -261,7 +261,7 @@ Vec3 unit_normal(const Solid& solid, std::size_t triangle) {
 
 bool is_upright(const Vec3& n) { return std::abs(n.z()) < kUpright && n.squaredNorm() > 0.5; }
 
-FoundHoles find_holes(const Solid& solid, const MeshEdges& edges, const FaceOptions& options) {
+FoundHoles find_holes(const TriangleSolid& solid, const MeshEdges& edges, const FaceOptions& options) {
   return HoleFinder(solid, edges, options).find();
 }
 

@@ -15,10 +15,10 @@ struct FoundHoles {
 };
 
 /// See find_faces.
-FoundHoles find_holes(const Solid& solid, const MeshEdges& edges, const FaceOptions& options);
+FoundHoles find_holes(const TriangleSolid& solid, const MeshEdges& edges, const FaceOptions& options);
 
 /// Normal of a triangle, of length 1; zero where it has no area.
-Vec3 unit_normal(const Solid& solid, std::size_t triangle);
+Vec3 unit_normal(const TriangleSolid& solid, std::size_t triangle);
 bool is_upright(const Vec3& unit_normal);
 
 }  // namespace camber::plan

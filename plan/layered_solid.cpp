@@ -179,7 +179,7 @@ using Loops = std::vector<std::vector<Vec2>>;
 
 class Layer {
  public:
-  explicit Layer(Solid& out) : out_(out) {}
+  explicit Layer(TriangleSolid& out) : out_(out) {}
 
   void walls(const std::vector<Vec2>& loop, double from, double to) {
     for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -203,13 +203,13 @@ class Layer {
     return it->second;
   }
 
-  Solid& out_;
+  TriangleSolid& out_;
   std::map<std::array<double, 3>, std::uint32_t> index_;
 };
 
 }  // namespace
 
-void add_layer(Solid& out, const Loops& loops, double from_mm, double to_mm, const std::vector<Well>& wells) {
+void add_layer(TriangleSolid& out, const Loops& loops, double from_mm, double to_mm, const std::vector<Well>& wells) {
   Layer layer(out);
   for (const auto& loop : loops) layer.walls(loop, from_mm, to_mm);
   Loops top = loops, bottom = loops;

@@ -24,7 +24,7 @@ struct Well {
 /// Adds the prism over a region from one height to another. `loops`: the region on the left of each, counter-clockwise
 /// around it and clockwise around holes, in whole micrometres, not crossing. The prism is closed by itself: each of its
 /// edges has two triangles of opposite direction.
-void add_layer(Solid& out, const std::vector<std::vector<Vec2>>& loops, double from_mm, double to_mm,
+void add_layer(TriangleSolid& out, const std::vector<std::vector<Vec2>>& loops, double from_mm, double to_mm,
                const std::vector<Well>& wells = {});
 
 }  // namespace camber::plan

@@ -100,7 +100,7 @@ Outline with_blank_corners(const Outline& loop, const Vec2& low, const Vec2& hig
 
 class Slices {
  public:
-  Slices(const removal::Stock& stock, const Bounds& blank)
+  Slices(const removal::Stock& stock, const SolidBounds& blank)
       : stock_(stock),
         blank_(blank),
         probe_(stock),
@@ -138,7 +138,7 @@ class Slices {
   }
 
   const removal::Stock& stock_;
-  Bounds blank_;
+  SolidBounds blank_;
   removal::Stock::Probe probe_;
   Grid grid_;
 };
@@ -201,7 +201,7 @@ std::vector<Chain> chains_of(const Slices& slices, const removal::Stock& stock, 
 }
 
 /// Heights at which much of the stock ends, with its own.
-std::vector<double> levels_of(const removal::Stock& stock, const Bounds& blank, const FaceOptions& options) {
+std::vector<double> levels_of(const removal::Stock& stock, const SolidBounds& blank, const FaceOptions& options) {
   const removal::Stock::Probe probe(stock);
   const double step = stock.voxel_mm();
   const Vec3 low = stock.min_mm(), high = stock.max_mm();
@@ -258,8 +258,8 @@ std::array<std::vector<double>, 2> walls_of(const Loops& loops) {
   return out;
 }
 
-Bounds bounds_of(const Outline& loop) {
-  Bounds out;
+SolidBounds bounds_of(const Outline& loop) {
+  SolidBounds out;
   for (const Vec2& p : loop) out.add(Vec3(p.x(), p.y(), 0));
   return out;
 }
@@ -267,9 +267,9 @@ Bounds bounds_of(const Outline& loop) {
 /// Replaces loops by the nearest of others, by their bounds, where that is near enough.
 void take_alike(Loops& loops, const Loops& others, double within_mm) {
   for (Outline& loop : loops) {
-    const Bounds own = bounds_of(loop);
+    const SolidBounds own = bounds_of(loop);
     const auto apart = [&](const Outline& other) {
-      const Bounds b = bounds_of(other);
+      const SolidBounds b = bounds_of(other);
       return std::max((b.min_mm - own.min_mm).cwiseAbs().maxCoeff(), (b.max_mm - own.max_mm).cwiseAbs().maxCoeff());
     };
     const auto near = std::ranges::min_element(others, {}, apart);
@@ -306,8 +306,9 @@ Outline ring_of(const Hole& hole) {
   return out;
 }
 
-Solid drilled(const std::vector<Loops>& layers, const std::vector<double>& levels, const std::vector<Hole>& holes) {
-  Solid out;
+TriangleSolid drilled(const std::vector<Loops>& layers, const std::vector<double>& levels,
+                      const std::vector<Hole>& holes) {
+  TriangleSolid out;
   const std::vector<Hole> wells = as_wells(holes);
   for (std::size_t k = 0; k < layers.size(); ++k) {
     std::vector<Well> here;
@@ -333,8 +334,8 @@ void put_in_line(Loops& loops, const std::array<std::vector<double>, 2>& walls, 
 
 }  // namespace
 
-StockPart part_of(const removal::Stock& stock, const Bounds& blank, const FaceOptions& options) {
-  StockPart out;
+PartOfStock part_of(const removal::Stock& stock, const SolidBounds& blank, const FaceOptions& options) {
+  PartOfStock out;
   const Slices slices(stock, blank);
   const std::vector<double> levels = levels_of(stock, blank, options);
   if (levels.size() < 2) return out;

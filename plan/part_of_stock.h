@@ -7,10 +7,10 @@
 
 namespace camber::plan {
 
-struct StockPart {
-  Solid solid;              ///< closed, with its holes filled
+struct PartOfStock {
+  TriangleSolid solid;      ///< closed, with its holes filled
   std::vector<Hole> holes;  ///< by x, then y, then top
-  Solid drilled;            ///< with its holes, down to the tips of their cones
+  TriangleSolid drilled;    ///< with its holes, down to the tips of their cones
 };
 
 /// Layers between the levels of the stock's floors (a three-hundredth of its area at least), each with the outline that
@@ -20,6 +20,6 @@ struct StockPart {
 /// loops within half a voxel of one of the layer below or above are that, and walls along an axis so near to one of a
 /// thicker layer are in line with it. A hole is a chain of circles in slices a voxel apart; its top is the level above
 /// it.
-StockPart part_of(const removal::Stock& stock, const Bounds& blank, const FaceOptions& options);
+PartOfStock part_of(const removal::Stock& stock, const SolidBounds& blank, const FaceOptions& options);
 
 }  // namespace camber::plan

@@ -109,8 +109,8 @@ void read_work(TomlTable table, PlanInput& plan) {
 }
 
 /// turn = [[1, 0, 0, 90], ...]: about an axis by so many degrees, one after the other.
-Setup read_setup(TomlTable table, std::size_t number) {
-  Setup out;
+PartSetup read_setup(TomlTable table, std::size_t number) {
+  PartSetup out;
   out.name = table.text("name", fmt::format("set-up {}", number));
   constexpr std::string_view kWanted = "turns [x, y, z, degrees] about an axis, as in [[1, 0, 0, 180]],";
   const auto rows = table.number_rows("turn", 0, 4, kAnyNumber, kWanted);

@@ -39,7 +39,7 @@ struct PlanLimits {
 };
 
 /// How the part lies on the machine.
-struct Setup {
+struct PartSetup {
   std::string name{};
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from the files' frame
 };
@@ -64,7 +64,7 @@ struct PlanInput {
   PlanLimits limits;
   machine::Simulation simulation;
   FaceOptions faces;
-  std::vector<Setup> setups;  ///< one at least
+  std::vector<PartSetup> setups;  ///< one at least
 };
 
 /// True for *.vdb: a part that is what a program leaves.

@@ -17,7 +17,7 @@ constexpr double kIsland_mm2 = 1;
 constexpr double kGaps = 0.15, kNoGap = 0.005;
 
 /// Where the axis may be: over the primitive, and so far beyond its open sides that the cutter leaves them.
-std::array<Vec2, 2> region_of(const Primitive& p, const OpenFaces& open, double radius_mm) {
+std::array<Vec2, 2> region_of(const VolumePrimitive& p, const OpenFaces& open, double radius_mm) {
   std::array<Vec2, 2> box{Vec2(p.min_mm.x(), p.min_mm.y()), Vec2(p.max_mm.x(), p.max_mm.y())};
   const double beyond = radius_mm + kBeyond_mm;
   for (int side = 0; side < 4; ++side)
@@ -58,7 +58,7 @@ class Planner {
         plan_hole(step);
       else
         plan_box(step);
-      const Primitive& p = out_.primitives[step.primitive];
+      const VolumePrimitive& p = out_.primitives[step.primitive];
       if (out_.operations.size() == before && !(p.is_hole && drilled_[p.hole]) &&
           (out_.unmachined.empty() || out_.unmachined.back().primitive != step.primitive))
         leave(step, "no operation");
@@ -70,18 +70,18 @@ class Planner {
   }
 
  private:
-  static std::string describe(const Primitive& p) {
+  static std::string describe(const VolumePrimitive& p) {
     return fmt::format("{} from ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g})", p.is_hole ? "hole" : "volume",
                        p.min_mm.x(), p.min_mm.y(), p.min_mm.z(), p.max_mm.x(), p.max_mm.y(), p.max_mm.z());
   }
 
   void leave(const Step& step, const std::string& reason) {
-    const Primitive& p = out_.primitives[step.primitive];
+    const VolumePrimitive& p = out_.primitives[step.primitive];
     out_.unmachined.push_back({step.primitive, fmt::format("{}, {}", to_string(step.feature), describe(p)), reason});
   }
 
   /// Smallest radius of the rounded inner corners beside a primitive; infinite: none.
-  double inner_radius_mm(const Primitive& p, bool& sharp) const {
+  double inner_radius_mm(const VolumePrimitive& p, bool& sharp) const {
     constexpr double kTouch_mm = 1e-3;
     double least = machine::kNoLimit;
     for (const InnerCorner& c : removal_.corners) {
@@ -102,20 +102,20 @@ class Planner {
   void group_holes() {
     for (std::size_t h = 0; h < begun_.size(); ++h)
       if (begun_[h] && !drilled_[h]) return;
-    const auto is_of_hole = [&](const Operation& o) {
+    const auto is_of_hole = [&](const PlanOperation& o) {
       return out_.primitives[out_.order.steps[o.primitive - 1].primitive].is_hole;
     };
     const auto first = std::ranges::find_if(out_.operations, is_of_hole);
     std::vector<int> tools;  // in the order in which they come
     for (auto o = first; o != out_.operations.end(); ++o)
       if (std::ranges::find(tools, o->tool) == tools.end()) tools.push_back(o->tool);
-    std::ranges::stable_sort(first, out_.operations.end(), {}, [&](const Operation& o) {
+    std::ranges::stable_sort(first, out_.operations.end(), {}, [&](const PlanOperation& o) {
       return std::make_pair(o.kind, std::ranges::find(tools, o.tool) - tools.begin());
     });
   }
 
   ToolNeed need_of(const Step& step) const {
-    const Primitive& p = out_.primitives[step.primitive];
+    const VolumePrimitive& p = out_.primitives[step.primitive];
     ToolNeed need;
     need.feature = step.feature;
     need.width_mm = step.width_mm;
@@ -135,7 +135,9 @@ class Planner {
     return need;
   }
 
-  static double area_mm2(const Primitive& p) { return (p.max_mm.x() - p.min_mm.x()) * (p.max_mm.y() - p.min_mm.y()); }
+  static double area_mm2(const VolumePrimitive& p) {
+    return (p.max_mm.x() - p.min_mm.x()) * (p.max_mm.y() - p.min_mm.y());
+  }
 
   double unreached_mm2(const Step& step, double radius_mm) const {
     return work_.unreached_mm2(step.primitive, step.open, radius_mm);
@@ -144,20 +146,21 @@ class Planner {
   const PlanTool& tool(int number) const { return input_.tools.at(number); }
 
   /// Null where the case base does not know the tool.
-  Operation* add(const Step& step, OperationKind kind, int number, Pattern pattern, const Cut& cut, std::string note) {
-    const Primitive& p = out_.primitives[step.primitive];
+  PlanOperation* add(const Step& step, OperationKind kind, int number, Pattern pattern, const CutNeed& cut,
+                     std::string note) {
+    const VolumePrimitive& p = out_.primitives[step.primitive];
     std::string said;
     const auto conditions = conditions_for(input_, tool(number), cut, said);
     if (!conditions) {
       leave(step, said);
       return nullptr;
     }
-    Operation op{.primitive = number_,
-                 .feature = step.feature,
-                 .kind = kind,
-                 .tool = number,
-                 .pattern = pattern,
-                 .conditions = *conditions};
+    PlanOperation op{.primitive = number_,
+                     .feature = step.feature,
+                     .kind = kind,
+                     .tool = number,
+                     .pattern = pattern,
+                     .conditions = *conditions};
     op.box_mm = region_of(p, step.open, tool(number).tool.diameter_mm / 2);
     op.from_mm = p.min_mm.z(), op.to_mm = p.max_mm.z();
     for (const std::string& n : {std::move(note), said})
@@ -168,13 +171,13 @@ class Planner {
     return &out_.operations.back();
   }
 
-  void set_volume(Operation& op, double volume_mm3) const {
+  void set_volume(PlanOperation& op, double volume_mm3) const {
     op.volume_mm3 = volume_mm3;
     op.nominal_time_s = volume_mm3 / removal_rate_mm3_per_s(tool(op.tool), op.conditions);
   }
 
   void plan_box(const Step& step) {
-    const Primitive& p = out_.primitives[step.primitive];
+    const VolumePrimitive& p = out_.primitives[step.primitive];
     bool sharp = false;
     const double inner = inner_radius_mm(p, sharp);
     ToolNeed need = need_of(step);
@@ -185,7 +188,7 @@ class Planner {
     const double depth = p.max_mm.z() - p.min_mm.z();
     const double surface = work_.wall_mm2(step.primitive) + work_.floor_mm2(step.primitive);
     const Pattern pattern = pattern_of(step.feature, p.contoured);
-    Operation* rough =
+    PlanOperation* rough =
         add(step, OperationKind::rough, pick->tool, pattern, {false, depth, machine::kNoLimit}, pick->note);
     if (rough == nullptr) return;
     rough->allowance_mm = input_.fine && surface > 0 ? input_.allowance_mm : 0;
@@ -204,8 +207,9 @@ class Planner {
     out_.operations.back().surface_mm2 = surface;
   }
 
-  Operation& rough_of(const Step&) {
-    const auto at = std::ranges::find_if(out_.operations, [&](const Operation& o) { return o.primitive == number_; });
+  PlanOperation& rough_of(const Step&) {
+    const auto at =
+        std::ranges::find_if(out_.operations, [&](const PlanOperation& o) { return o.primitive == number_; });
     return *at;
   }
 
@@ -218,7 +222,7 @@ class Planner {
           fmt::format("inner corners of {:.3g} mm keep more material; they need {}", inner_mm, wanted));
       return std::nullopt;
     }
-    Operation* rest =
+    PlanOperation* rest =
         add(step, OperationKind::rest, pick->tool, Pattern::contour_line,
             {false, out_.primitives[step.primitive].max_mm.z() - out_.primitives[step.primitive].min_mm.z(),
              machine::kNoLimit},
@@ -250,7 +254,7 @@ class Planner {
           fmt::format("gaps of {:.3g} mm2 in all keep material; they need {}", left - least, wanted));
       return std::nullopt;
     }
-    Operation* rest =
+    PlanOperation* rest =
         add(step, OperationKind::rest, pick->tool, Pattern::contour_line, {false, depth, machine::kNoLimit}, {});
     if (rest == nullptr) return std::nullopt;
     rest->allowance_mm = rough_of(step).allowance_mm;
@@ -259,10 +263,11 @@ class Planner {
   }
 
   void add_finish(const Step& step, int number, double left_mm3) {
-    const Primitive& p = out_.primitives[step.primitive];
+    const VolumePrimitive& p = out_.primitives[step.primitive];
     const bool level = step.feature == Feature::face && !p.contoured;
-    Operation* finish = add(step, OperationKind::finish, number, level ? Pattern::scanning_line : Pattern::contour_line,
-                            {true, p.max_mm.z() - p.min_mm.z(), machine::kNoLimit}, {});
+    PlanOperation* finish =
+        add(step, OperationKind::finish, number, level ? Pattern::scanning_line : Pattern::contour_line,
+            {true, p.max_mm.z() - p.min_mm.z(), machine::kNoLimit}, {});
     if (finish == nullptr) return;
     Conditions& c = finish->conditions;
     // Walls are finished over the radial depth of the allowance, floors over its axial depth.
@@ -272,7 +277,7 @@ class Planner {
   }
 
   void plan_free_form(const Step& step, ToolNeed need) {
-    const Primitive& p = out_.primitives[step.primitive];
+    const VolumePrimitive& p = out_.primitives[step.primitive];
     bool sharp = false;
     need.inner_radius_mm = inner_radius_mm(p, sharp);
     need.has_room = {};
@@ -282,14 +287,14 @@ class Planner {
     const double depth = p.max_mm.z() - p.min_mm.z(), radius = tool(ball->tool).tool.diameter_mm / 2;
     const std::string note = p.overhang ? "a face of it looks down; it is not reached there" : "";
     const double left = rough_free_form(step, need, ball->tool);
-    Operation* op = add(step, OperationKind::finish, ball->tool, Pattern::scanning_line,
-                        {input_.fine, radius, machine::kNoLimit}, note);
+    PlanOperation* op = add(step, OperationKind::finish, ball->tool, Pattern::scanning_line,
+                            {input_.fine, radius, machine::kNoLimit}, note);
     if (op == nullptr) return;
     finish_free_form(*op, radius, std::min(left, depth * free_form_mm2(p)), free_form_mm2(p));
   }
 
   /// Rows whose ridges have the height that is asked for; without one as far apart as the cases say.
-  void finish_free_form(Operation& op, double radius, double left_mm3, double surface_mm2) const {
+  void finish_free_form(PlanOperation& op, double radius, double left_mm3, double surface_mm2) const {
     Conditions& c = op.conditions;
     if (input_.fine) {
       op.scallop_mm = input_.scallop_mm;
@@ -306,7 +311,7 @@ class Planner {
   /// None where no more is there than roughing would leave. Levels, by an end mill where it is deeper than the ball end
   /// mill cuts at once, else by that itself. Returns what is left.
   double rough_free_form(const Step& step, ToolNeed need, int ball) {
-    const Primitive& p = out_.primitives[step.primitive];
+    const VolumePrimitive& p = out_.primitives[step.primitive];
     constexpr double kSkin = 1.05;  // of the allowance that roughing would leave
     if (p.volume_mm3 <= kSkin * input_.allowance_mm * free_form_mm2(p)) return p.volume_mm3;
     const double depth = p.max_mm.z() - p.min_mm.z();
@@ -315,7 +320,7 @@ class Planner {
     std::string wanted;
     const auto mill =
         depth > tool(ball).tool.diameter_mm / 2 ? pick_mill(need, input_.tools, wanted) : std::optional<ToolPick>();
-    Operation* rough =
+    PlanOperation* rough =
         add(step, OperationKind::rough, mill ? mill->tool : ball, mill ? Pattern::contour_line : Pattern::scanning_line,
             {false, depth, machine::kNoLimit}, {});
     if (rough == nullptr) return p.volume_mm3;
@@ -327,7 +332,7 @@ class Planner {
     return left;
   }
 
-  double free_form_mm2(const Primitive& p) const {
+  double free_form_mm2(const VolumePrimitive& p) const {
     double sum = 0;
     for (const CellIndex& c : p.cells) sum += removal_.grid.at(c).free_form_mm2;
     return sum;
@@ -356,8 +361,8 @@ class Planner {
     if (!tools) return leave(step, "none of the tools will do; it needs " + wanted);
     const double volume = out_.primitives[step.primitive].volume_mm3;
     if (tools->end_mill) {
-      Operation* op = add(step, OperationKind::rough, *tools->end_mill, Pattern::contour_line,
-                          {false, need.depth_mm, machine::kNoLimit}, tools->note);
+      PlanOperation* op = add(step, OperationKind::rough, *tools->end_mill, Pattern::contour_line,
+                              {false, need.depth_mm, machine::kNoLimit}, tools->note);
       if (op != nullptr) set_volume(*op, volume);
       return;
     }
@@ -377,8 +382,9 @@ class Planner {
 
   /// The drill of a reamed hole goes on to the end of the hole below, which has its diameter.
   void drill_on(const Hole& below, std::size_t number) {
-    const auto drill = std::ranges::find_if(
-        out_.operations, [&](const Operation& o) { return o.primitive == number_ && o.kind == OperationKind::drill; });
+    const auto drill = std::ranges::find_if(out_.operations, [&](const PlanOperation& o) {
+      return o.primitive == number_ && o.kind == OperationKind::drill;
+    });
     if (drill == out_.operations.end()) return;
     drilled_[number] = true;
     drill->from_mm = below.tip_mm;
@@ -389,7 +395,7 @@ class Planner {
 
   bool is_through(const Hole& hole) const {
     const auto p = std::ranges::find_if(
-        out_.primitives, [&](const Primitive& of) { return of.is_hole && &removal_.holes[of.hole] == &hole; });
+        out_.primitives, [&](const VolumePrimitive& of) { return of.is_hole && &removal_.holes[of.hole] == &hole; });
     return p != out_.primitives.end() && work_.open_faces(static_cast<std::size_t>(p - out_.primitives.begin())).bottom;
   }
 
@@ -399,7 +405,7 @@ class Planner {
   }
 
   void add_drilling(const Step& step, const Hole& hole, int number, OperationKind kind, double volume_mm3) {
-    Operation* op =
+    PlanOperation* op =
         add(step, kind, number, Pattern::drilling, {kind == OperationKind::ream, step.width_mm, step.width_mm}, {});
     if (op == nullptr) return;
     op->box_mm = {hole.centre_mm, hole.centre_mm};
@@ -420,30 +426,30 @@ class Planner {
   const PlanInput& input_;
   const RemovalVolume& removal_;
   PlannedDivision& out_;
-  Workpiece work_;
+  MachinedSpace work_;
   std::vector<bool> begun_, drilled_;  ///< holes under others: led by them; made by their drill
   std::size_t number_ = 0;
 };
 
 }  // namespace
 
-int tool_changes(const std::vector<Operation>& operations) {
+int tool_changes(const std::vector<PlanOperation>& operations) {
   int changes = 0;
   for (std::size_t i = 1; i < operations.size(); ++i)
     if (operations[i].tool != operations[i - 1].tool) ++changes;
   return changes;
 }
 
-double total_time_s(const std::vector<Operation>& operations, double tool_change_s) {
+double total_time_s(const std::vector<PlanOperation>& operations, double tool_change_s) {
   double sum = tool_change_s * tool_changes(operations);
-  for (const Operation& o : operations) sum += o.nominal_time_s;
+  for (const PlanOperation& o : operations) sum += o.nominal_time_s;
   return sum;
 }
 
-double form_error_p95_mm(const std::vector<Operation>& operations) {
+double form_error_p95_mm(const std::vector<PlanOperation>& operations) {
   std::vector<std::pair<double, double>> errors;  // and surfaces
   double all = 0;
-  for (const Operation& o : operations)
+  for (const PlanOperation& o : operations)
     if (o.surface_mm2 > 0) {
       errors.emplace_back(o.conditions.loads.form_error_mm, o.surface_mm2);
       all += o.surface_mm2;

@@ -15,7 +15,7 @@ inline constexpr std::array<std::string_view, 3> kPatterns{"scanning-line", "con
 enum class OperationKind : unsigned char { rough, rest, finish, centre, drill, ream };
 inline constexpr std::array<std::string_view, 6> kOperationKinds{"rough", "rest", "finish", "centre", "drill", "ream"};
 
-struct Operation {
+struct PlanOperation {
   std::size_t primitive = 0;  ///< place in the order, from 1
   Feature feature = Feature::face;
   OperationKind kind = OperationKind::rough;
@@ -41,7 +41,7 @@ struct Unmachined {
 };
 
 /// The program of a plan, and the cut along it.
-struct ProgramFigures {
+struct PlanFigures {
   double time_s = 0;  ///< by the feed model, with tool changes and spindle
   double removed_mm3 = 0;
   double left_p95_um = 0, left_max_um = 0;  ///< on the part, where tools can touch it
@@ -51,14 +51,14 @@ struct ProgramFigures {
 /// One of the three plans.
 struct PlannedDivision {
   DivisionPlan division = DivisionPlan::largest;
-  std::vector<Primitive> primitives;
+  std::vector<VolumePrimitive> primitives;
   Order order;
-  std::vector<Operation> operations;
+  std::vector<PlanOperation> operations;
   std::vector<Unmachined> unmachined;
   int tool_changes = 0;
-  double nominal_time_s = 0;              ///< equation (3)
-  std::optional<ProgramFigures> program;  ///< not given: none was made
-  double form_error_p95_mm = 0;           ///< percentile over the last operations at each surface, weighted by area
+  double nominal_time_s = 0;           ///< equation (3)
+  std::optional<PlanFigures> program;  ///< not given: none was made
+  double form_error_p95_mm = 0;        ///< percentile over the last operations at each surface, weighted by area
   bool complete() const { return unmachined.empty(); }
 };
 
@@ -69,11 +69,11 @@ struct PlannedDivision {
 PlannedDivision plan_division(const PlanInput& input, const RemovalVolume& removal, DivisionPlan division);
 
 /// Number of times that the tool changes from one operation to the next.
-int tool_changes(const std::vector<Operation>& operations);
+int tool_changes(const std::vector<PlanOperation>& operations);
 /// Equation (3): the sum of the operations and tool_change_s for each change.
-double total_time_s(const std::vector<Operation>& operations, double tool_change_s);
+double total_time_s(const std::vector<PlanOperation>& operations, double tool_change_s);
 /// 95th percentile, weighted by surface.
-double form_error_p95_mm(const std::vector<Operation>& operations);
+double form_error_p95_mm(const std::vector<PlanOperation>& operations);
 
 /// Index of the plan that is taken: complete before incomplete, then the least time, fewer tool changes, less form
 /// error; the first of equal ones.

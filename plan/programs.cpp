@@ -76,12 +76,12 @@ double without_noise(double mm) {
 Vec2 rounded(const Vec2& p) { return {to_micrometres(p.x()), to_micrometres(p.y())}; }
 
 /// Rows run along the longer side.
-double row_angle_rad(const Operation& o) {
+double row_angle_rad(const PlanOperation& o) {
   const Vec2 size = o.box_mm[1] - o.box_mm[0];
   return size.x() >= size.y() ? 0 : kPi / 2;
 }
 
-machine::CopyOperation copy_operation(const Operation& o) {
+machine::CopyOperation copy_operation(const PlanOperation& o) {
   machine::CopyOperation out;
   out.tool = o.tool;
   out.mode = mode_of(o.pattern);
@@ -146,7 +146,7 @@ std::size_t refused(const InputError& error) {
 class SavedStocks {
  public:
   explicit SavedStocks(const PlannedDivision& plan) {
-    for (const Operation& o : plan.operations) finishes_.push_back(o.kind == OperationKind::finish);
+    for (const PlanOperation& o : plan.operations) finishes_.push_back(o.kind == OperationKind::finish);
   }
   bool has(std::size_t operation) const { return finishes_[operation]; }
   std::string path(std::size_t operation) const { return fmt::format("{}/stock-{}.vdb", folder_.path(), operation); }
@@ -202,7 +202,7 @@ void add_warnings(const machine::Job& job, const std::string& name, const std::s
 std::vector<machine::CopyOperation> copy_operations(const PlanInput& input, const PlannedDivision& plan) {
   std::vector<machine::CopyOperation> out;
   for (std::size_t i = 0; i < plan.operations.size(); ++i) {
-    const Operation& o = plan.operations[i];
+    const PlanOperation& o = plan.operations[i];
     if (o.joined) {
       join_to(out.back(), copy_operation(o));
       continue;

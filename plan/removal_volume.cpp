@@ -82,7 +82,8 @@ void CellGrid::each(Function f) {
       for (int z = 0; z < count(2); ++z) f(CellIndex{x, y, z});
 }
 
-void CellGrid::add(const Solid& solid, double Cell::*field, double Cell::*free_form_area, double Cell::*overhang_area) {
+void CellGrid::add(const TriangleSolid& solid, double GridCell::*field, double GridCell::*free_form_area,
+                   double GridCell::*overhang_area) {
   constexpr double kUpright = 0.01, kLevel = 1 - 1.5e-6;
   for (const Triangle& t : solid.triangles) {
     Polygon whole;
@@ -102,7 +103,7 @@ void CellGrid::add(const Solid& solid, double Cell::*field, double Cell::*free_f
         double mean_z = 0;
         const double area = area_of(column, mean_z);
         for (int z = 0; z < count(2) && plane_mm(2, z) < high.z(); ++z) {
-          Cell& cell = at({x, y, z});
+          GridCell& cell = at({x, y, z});
           const double from = plane_mm(2, z), to = plane_mm(2, z + 1);
           if (low.z() >= to) {
             cell.*field += area * (to - from);
@@ -128,7 +129,7 @@ constexpr double kFreeForm = 1e-4;
 
 void CellGrid::classify(double tolerance_mm) {
   each([&](const CellIndex& c) {
-    Cell& cell = at(c);
+    GridCell& cell = at(c);
     const double faces = faces_mm2(c), of_part = cell.free_form_mm2, of_both = of_part + cell.blank_free_form_mm2;
     const auto counts = [&](double volume, double free_form) {
       return volume > tolerance_mm * faces || (free_form > kFreeForm * faces && volume > tolerance_mm * free_form);
@@ -172,7 +173,7 @@ void CellGrid::join_skins() {
 namespace {
 
 /// Share of a hole that is material of the blank, at points in it.
-double material_in(const Hole& hole, const Solid& blank) {
+double material_in(const Hole& hole, const TriangleSolid& blank) {
   constexpr int kRings = 3, kAround = 8;
   double filled = 0, height = 0;
   for (int ring = 0; ring < kRings; ++ring)
@@ -197,14 +198,14 @@ std::vector<AxisPlane> planes_within(std::vector<AxisPlane> planes, double low, 
   return joined(std::move(planes), tolerance);
 }
 
-CellGrid make_grid(const RemovalInput& input, const Faces& part, const Bounds& space) {
+CellGrid make_grid(const RemovalInput& input, const Faces& part, const SolidBounds& space) {
   const auto of_blank = input.blank.heights_only ? input.blank_planes : find_planes(input.blank, input.faces);
   std::array<std::vector<AxisPlane>, 3> planes;
   for (std::size_t a = 0; a < 3; ++a) {
     std::vector<AxisPlane> all = part.planes[a];
     all.insert(all.end(), of_blank[a].begin(), of_blank[a].end());
     all.insert(all.end(), input.machined_planes[a].begin(), input.machined_planes[a].end());
-    for (const Solid& f : input.fixtures) {
+    for (const TriangleSolid& f : input.fixtures) {
       const auto of_fixture = find_planes(f, input.faces)[a];
       all.insert(all.end(), of_fixture.begin(), of_fixture.end());
     }
@@ -226,7 +227,7 @@ void take_machined(const RemovalInput& input, CellGrid& g) {
       }
 }
 
-void append(Solid& to, const Solid& from) {
+void append(TriangleSolid& to, const TriangleSolid& from) {
   const auto first = static_cast<std::uint32_t>(to.points.size());
   to.points.insert(to.points.end(), from.points.begin(), from.points.end());
   for (const Triangle& t : from.triangles) to.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
@@ -238,7 +239,7 @@ void sum_up(RemovalVolume& out, double tolerance_mm) {
     for (int y = 0; y < g.count(1); ++y)
       for (int z = 0; z < g.count(2); ++z) {
         const CellIndex c{x, y, z};
-        const Cell& cell = g.at(c);
+        const GridCell& cell = g.at(c);
         if (cell.kind == CellKind::clear || cell.kind == CellKind::contoured || cell.kind == CellKind::free_form)
           out.cells_mm3 += cell.removal_mm3();
         double thin = 0;
@@ -255,10 +256,10 @@ double RemovalVolume::balance() const { return removal_mm3() > 0 ? (cells_mm3 + 
 RemovalVolume removal_volume(const RemovalInput& input) {
   Faces part = find_faces(input.part, input.faces);
   part.holes.insert(part.holes.end(), input.part_holes.begin(), input.part_holes.end());
-  Bounds space = input.blank.bounds();
-  const Bounds blank_bounds = space;
+  SolidBounds space = input.blank.bounds();
+  const SolidBounds blank_bounds = space;
   space.add(part.plugged.bounds());
-  for (const Solid& f : input.fixtures) space.add(f.bounds());
+  for (const TriangleSolid& f : input.fixtures) space.add(f.bounds());
   RemovalVolume out{make_grid(input, part, space)};
   out.corners = part.corners;
   out.blank_bounds = blank_bounds;
@@ -266,9 +267,9 @@ RemovalVolume removal_volume(const RemovalInput& input) {
   out.part_mm3 = volume_mm3(input.part);
   for (const Hole& h : input.part_holes) out.part_mm3 -= h.volume_mm3;
   out.free_form_mm2 = part.free_form_mm2;
-  out.grid.add(input.blank, &Cell::blank_mm3, &Cell::blank_free_form_mm2);
-  out.grid.add(part.plugged, &Cell::part_mm3, &Cell::free_form_mm2, &Cell::overhang_mm2);
-  for (const Solid& f : input.fixtures) out.grid.add(f, &Cell::fixture_mm3);
+  out.grid.add(input.blank, &GridCell::blank_mm3, &GridCell::blank_free_form_mm2);
+  out.grid.add(part.plugged, &GridCell::part_mm3, &GridCell::free_form_mm2, &GridCell::overhang_mm2);
+  for (const TriangleSolid& f : input.fixtures) out.grid.add(f, &GridCell::fixture_mm3);
   take_machined(input, out.grid);
   const double tolerance = std::max(input.tolerance_mm, input.faces.plane_tolerance_mm);
   out.grid.classify(tolerance);
@@ -284,7 +285,7 @@ RemovalVolume removal_volume(const RemovalInput& input) {
   sum_up(out, tolerance);
   out.narrowest_mm = input.narrowest_mm;
   out.stays = std::move(part.plugged);
-  for (const Solid& f : input.fixtures) append(out.stays, f);
+  for (const TriangleSolid& f : input.fixtures) append(out.stays, f);
   out.outside_mm3 = std::max(0.0, out.outside_mm3 - 1.01 * done_mm3);
   return out;
 }

@@ -18,7 +18,7 @@ enum class CellKind : unsigned char {
   fixture     ///< the tool may not go there
 };
 
-struct Cell {
+struct GridCell {
   double blank_mm3 = 0, part_mm3 = 0, fixture_mm3 = 0;
   double free_form_mm2 = 0;        ///< area of the part's faces in it
   double overhang_mm2 = 0;         ///< area of these that looks down
@@ -45,8 +45,8 @@ class CellGrid {
     return planes_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)];
   }
   bool holds(const CellIndex& c) const;
-  Cell& at(const CellIndex& c) { return cells_[place(c)]; }
-  const Cell& at(const CellIndex& c) const { return cells_[place(c)]; }
+  GridCell& at(const CellIndex& c) { return cells_[place(c)]; }
+  const GridCell& at(const CellIndex& c) const { return cells_[place(c)]; }
   std::size_t place(const CellIndex& c) const;
   std::size_t size() const { return cells_.size(); }
   Vec3 low_mm(const CellIndex& c) const { return {plane_mm(0, c.x), plane_mm(1, c.y), plane_mm(2, c.z)}; }
@@ -58,8 +58,8 @@ class CellGrid {
 
   /// Adds the volume of a solid in each cell to `field`, exactly: each triangle is clipped to the cells' columns, and
   /// the space under it counts. Where given also the areas of free-form faces, and of those that look down.
-  void add(const Solid& solid, double Cell::*field, double Cell::*free_form = nullptr,
-           double Cell::*overhang = nullptr);
+  void add(const TriangleSolid& solid, double GridCell::*field, double GridCell::*free_form = nullptr,
+           double GridCell::*overhang = nullptr);
   /// Sets the kinds. What is thinner than `tolerance_mm` over a cell's faces does not count; of a free-form surface,
   /// which a cell may hold a small part of, what is thinner over that part.
   void classify(double tolerance_mm);
@@ -71,14 +71,14 @@ class CellGrid {
   void join_skins();
 
   std::array<std::vector<AxisPlane>, 3> planes_;
-  std::vector<Cell> cells_;
+  std::vector<GridCell> cells_;
 };
 
 struct RemovalInput {
-  Solid blank{}, part{};
+  TriangleSolid blank{}, part{};
   /// Holes of a part that comes with its holes filled.
   std::vector<Hole> part_holes{};
-  std::vector<Solid> fixtures{};
+  std::vector<TriangleSolid> fixtures{};
   FaceOptions faces{};
   /// Planes of a blank that comes as heights only.
   std::array<std::vector<AxisPlane>, 3> blank_planes{};
@@ -101,8 +101,8 @@ struct RemovalVolume {
   double cells_mm3 = 0, holes_mm3 = 0;  ///< to be removed
   double outside_mm3 = 0;               ///< volume of the part where there is no blank
   double free_form_mm2 = 0;
-  Bounds blank_bounds;
-  Solid stays;              ///< part with its holes filled, and fixtures
+  SolidBounds blank_bounds;
+  TriangleSolid stays;      ///< part with its holes filled, and fixtures
   double narrowest_mm = 0;  ///< see RemovalInput
 
   double removal_mm3() const { return blank_mm3 - part_mm3; }

@@ -15,13 +15,13 @@ namespace camber::plan {
 namespace {
 
 /// STEP files say their unit themselves.
-Solid read_solid(const std::string& path, double mm_per_unit) {
+TriangleSolid read_solid(const std::string& path, double mm_per_unit) {
   const TriangleMesh mesh = read_mesh(path);
   if (const std::size_t open = mesh.open_edges(); open > 0)
     fail_on_file(path,
                  fmt::format("the mesh has {} edges without exactly two triangles; a closed solid was expected", open),
                  "stl-open");
-  Solid out = solid_of(mesh);
+  TriangleSolid out = solid_of(mesh);
   if (!is_step_file(path))
     for (Vec3& p : out.points) p *= mm_per_unit;
   return out;
@@ -33,9 +33,9 @@ removal::Stock load_stock(const std::string& path, const PlanInput& input) {
 }
 
 /// With its holes filled where it comes as a stock.
-StockPart read_part(const PlanInput& input, const Bounds& blank) {
+PartOfStock read_part(const PlanInput& input, const SolidBounds& blank) {
   if (!is_stock_file(input.part_path)) return {read_solid(input.part_path, input.mm_per_unit), {}, {}};
-  StockPart out = part_of(load_stock(input.part_path, input), blank, input.faces);
+  PartOfStock out = part_of(load_stock(input.part_path, input), blank, input.faces);
   if (out.solid.triangles.empty())
     fail_on_file(input.part_path, "has no material with an upright wall between two levels; a part was expected",
                  "part-missing");
@@ -43,7 +43,7 @@ StockPart read_part(const PlanInput& input, const Bounds& blank) {
 }
 
 struct Blank {
-  Solid solid;
+  TriangleSolid solid;
   std::array<std::vector<AxisPlane>, 3> planes{};
   double tolerance_mm = 0;
 };
@@ -67,8 +67,8 @@ class Machined {
       : earlier_(&earlier), turn_(later_turn * earlier.setup.turn.transpose()) {
     const PlannedDivision& plan = earlier.plans[earlier.best];
     goes_.assign(earlier.removal.grid.size(), false);
-    for (const Operation& o : plan.operations) {
-      const Primitive& p = plan.primitives[plan.order.steps[o.primitive - 1].primitive];
+    for (const PlanOperation& o : plan.operations) {
+      const VolumePrimitive& p = plan.primitives[plan.order.steps[o.primitive - 1].primitive];
       if (p.is_hole) holes_.push_back(earlier.removal.holes[p.hole]);
       for (const CellIndex& c : p.cells) goes_[earlier.removal.grid.place(c)] = true;
     }
@@ -142,11 +142,11 @@ double narrowest_mill_mm(const PlanTools& tools) {
   return out;
 }
 
-RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid& part, const std::vector<Hole>& holes,
-                         const std::vector<Solid>& fixtures, const Eigen::Matrix3d& turn,
-                         const std::vector<Machined>& machined) {
+RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const TriangleSolid& part,
+                         const std::vector<Hole>& holes, const std::vector<TriangleSolid>& fixtures,
+                         const Eigen::Matrix3d& turn, const std::vector<Machined>& machined) {
   RemovalInput in{.blank = turned(blank.solid, turn), .part = part, .part_holes = holes, .faces = input.faces};
-  for (const Solid& f : fixtures) in.fixtures.push_back(turned(f, turn));
+  for (const TriangleSolid& f : fixtures) in.fixtures.push_back(turned(f, turn));
   in.narrowest_mm = narrowest_mill_mm(input.tools);
   // Outlines of layers thinner than a voxel are those of edges that the field rounds.
   constexpr double kEdges = 0.2;
@@ -162,9 +162,10 @@ RemovalVolume removal_of(const PlanInput& input, const Blank& blank, const Solid
   return removal_volume(in);
 }
 
-SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const StockPart& part,
-                     const std::vector<Solid>& fixtures, const Setup& setup, const std::vector<Machined>& machined) {
-  const Solid lying = turned(part.solid, setup.turn);
+SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const PartOfStock& part,
+                     const std::vector<TriangleSolid>& fixtures, const PartSetup& setup,
+                     const std::vector<Machined>& machined) {
+  const TriangleSolid lying = turned(part.solid, setup.turn);
   SetupPlan out{setup,
                 turned(blank.solid, setup.turn),
                 part.drilled.triangles.empty() ? lying : turned(part.drilled, setup.turn),
@@ -187,14 +188,14 @@ SetupPlan plan_setup(const PlanInput& input, const Blank& blank, const StockPart
 
 PlanResult make_plan(const PlanInput& input, Diagnostics& diagnostics) {
   const Blank blank = read_blank(input);
-  const StockPart part = read_part(input, blank.solid.bounds());
-  std::vector<Solid> fixtures;
+  const PartOfStock part = read_part(input, blank.solid.bounds());
+  std::vector<TriangleSolid> fixtures;
   for (const std::string& path : input.fixture_paths) fixtures.push_back(read_solid(path, input.mm_per_unit));
   PlanResult out;
   out.setups.reserve(input.setups.size());
   out.removal_mm3 = volume_mm3(blank.solid) - volume_mm3(part.solid);
   for (const Hole& h : part.holes) out.removal_mm3 += h.volume_mm3;
-  for (const Setup& setup : input.setups) {
+  for (const PartSetup& setup : input.setups) {
     std::vector<Machined> machined;
     for (const SetupPlan& earlier : out.setups) machined.emplace_back(earlier, setup.turn);
     for (const Machined& m : machined)

@@ -12,8 +12,8 @@ namespace camber::plan {
 
 /// One position of the part on the machine.
 struct SetupPlan {
-  Setup setup;
-  Solid blank, part;  ///< turned
+  PartSetup setup;
+  TriangleSolid blank, part;  ///< turned
   RemovalVolume removal;
   std::vector<PlannedDivision> plans;  ///< as kDivisionPlans
   std::size_t best = 0;

@@ -286,7 +286,7 @@ Conditions bounded(Conditions c, const PlanInput& plan, const PlanTool& tool) {
   return c;
 }
 
-std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& tool, const Cut& cut,
+std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& tool, const CutNeed& cut,
                                          std::string& note) {
   CaseContent query{
       plan.work_material,   std::string(to_string(tool.use)), tool.material, tool.coated, cut.fine, plan.fast,

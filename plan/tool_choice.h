@@ -80,7 +80,7 @@ CutLoads mill_loads(const machine::Tool& tool, const machine::Material& material
 CutLoads drill_loads(const machine::Tool& tool, const machine::Material& material, const Conditions& c);
 
 /// Requirements of an operation beside its tool.
-struct Cut {
+struct CutNeed {
   bool fine = false;
   double depth_mm = machine::kNoLimit;  ///< depth of the primitive: no deeper cut
   double width_mm = machine::kNoLimit;  ///< no wider one
@@ -93,7 +93,7 @@ Conditions bounded(Conditions c, const PlanInput& plan, const PlanTool& tool);
 
 /// Nothing where the case base has no case of the tool's type. Where it has none of fast machining, usual ones answer,
 /// with a note.
-std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& tool, const Cut& cut,
+std::optional<Conditions> conditions_for(const PlanInput& plan, const PlanTool& tool, const CutNeed& cut,
                                          std::string& note);
 
 /// Equation (5): Ad Rd F / 60, mm^3/s; drills pi D^2 F / 240.

@@ -5,28 +5,28 @@
 
 namespace camber::plan {
 
-void Bounds::add(const Vec3& point) {
+void SolidBounds::add(const Vec3& point) {
   min_mm = min_mm.cwiseMin(point);
   max_mm = max_mm.cwiseMax(point);
 }
 
-void Bounds::add(const Bounds& other) {
+void SolidBounds::add(const SolidBounds& other) {
   min_mm = min_mm.cwiseMin(other.min_mm);
   max_mm = max_mm.cwiseMax(other.max_mm);
 }
 
-Vec3 Solid::normal_by_area(const Triangle& t) const {
+Vec3 TriangleSolid::normal_by_area(const Triangle& t) const {
   const Vec3 u = corner(t, 1) - corner(t, 0), v = corner(t, 2) - corner(t, 0);
   return {u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(), u.x() * v.y() - u.y() * v.x()};
 }
 
-Bounds Solid::bounds() const {
-  Bounds out;
+SolidBounds TriangleSolid::bounds() const {
+  SolidBounds out;
   for (const Vec3& p : points) out.add(p);
   return out;
 }
 
-double volume_mm3(const Solid& solid) {
+double volume_mm3(const TriangleSolid& solid) {
   if (solid.points.empty()) return 0;
   const Vec3 origin = solid.points.front();
   double sum = 0;
@@ -39,8 +39,8 @@ double volume_mm3(const Solid& solid) {
   return sum;
 }
 
-Solid solid_of(const TriangleMesh& mesh) {
-  Solid out;
+TriangleSolid solid_of(const TriangleMesh& mesh) {
+  TriangleSolid out;
   out.points.reserve(mesh.points.size());
   for (const auto& p : mesh.points) out.points.push_back(p.cast<double>());
   out.triangles = mesh.triangles;
@@ -50,8 +50,8 @@ Solid solid_of(const TriangleMesh& mesh) {
 namespace {
 
 /// The prism over a polygon that runs counter-clockwise.
-Solid prism(const std::vector<Vec2>& outline, double bottom, double top) {
-  Solid out;
+TriangleSolid prism(const std::vector<Vec2>& outline, double bottom, double top) {
+  TriangleSolid out;
   const auto n = static_cast<std::uint32_t>(outline.size());
   for (const Vec2& p : outline) out.points.emplace_back(p.x(), p.y(), bottom);
   for (const Vec2& p : outline) out.points.emplace_back(p.x(), p.y(), top);
@@ -69,12 +69,12 @@ Solid prism(const std::vector<Vec2>& outline, double bottom, double top) {
 
 }  // namespace
 
-Solid solid_of(const machine::Box& box) {
+TriangleSolid solid_of(const machine::Box& box) {
   const Vec3 &a = box.min_mm, &b = box.max_mm;
   return prism({{a.x(), a.y()}, {b.x(), a.y()}, {b.x(), b.y()}, {a.x(), b.y()}}, a.z(), b.z());
 }
 
-Solid solid_of(const machine::Cylinder& cylinder) {
+TriangleSolid solid_of(const machine::Cylinder& cylinder) {
   constexpr int kSides = 180;
   const double step = 2 * kPi / kSides;
   const double radius = cylinder.diameter_mm / 2 * std::sqrt(step / std::sin(step));
@@ -85,8 +85,8 @@ Solid solid_of(const machine::Cylinder& cylinder) {
   return prism(outline, cylinder.base_mm.z(), cylinder.base_mm.z() + cylinder.height_mm);
 }
 
-Solid turned(const Solid& solid, const Eigen::Matrix3d& turn) {
-  Solid out = solid;
+TriangleSolid turned(const TriangleSolid& solid, const Eigen::Matrix3d& turn) {
+  TriangleSolid out = solid;
   for (Vec3& p : out.points) p = turn * p;
   return out;
 }
@@ -100,7 +100,7 @@ double cross2(const Vec3& a, const Vec3& b, double x, double y) {
 bool upright_edge(const Vec3& a, const Vec3& b) { return a.x() == b.x() && a.y() == b.y(); }
 
 /// False where the line passes an edge. Upright triangles do not count, though rounding may leave them an area.
-bool cross_all(const Solid& solid, double x, double y, std::vector<std::pair<double, int>>& crossings) {
+bool cross_all(const TriangleSolid& solid, double x, double y, std::vector<std::pair<double, int>>& crossings) {
   crossings.clear();
   for (const Triangle& t : solid.triangles) {
     const Vec3 &a = solid.points[t[0]], &b = solid.points[t[1]], &c = solid.points[t[2]];
@@ -118,7 +118,7 @@ bool cross_all(const Solid& solid, double x, double y, std::vector<std::pair<dou
 
 }  // namespace
 
-std::vector<double> material_along_z(const Solid& solid, double x_mm, double y_mm) {
+std::vector<double> material_along_z(const TriangleSolid& solid, double x_mm, double y_mm) {
   std::vector<std::pair<double, int>> crossings;
   double move = 0;
   while (!cross_all(solid, x_mm + move, y_mm + 0.618 * move, crossings)) move += 3.7e-6;
@@ -142,14 +142,14 @@ std::vector<double> material_along_z(const Solid& solid, double x_mm, double y_m
   return out;
 }
 
-bool contains(const Solid& solid, const Vec3& point) {
+bool contains(const TriangleSolid& solid, const Vec3& point) {
   const std::vector<double> z = material_along_z(solid, point.x(), point.y());
   for (std::size_t i = 0; i + 1 < z.size(); i += 2)
     if (point.z() > z[i] && point.z() < z[i + 1]) return true;
   return false;
 }
 
-MeshEdges::MeshEdges(const Solid& solid) : neighbours(3 * solid.triangles.size(), kNone) {
+MeshEdges::MeshEdges(const TriangleSolid& solid) : neighbours(3 * solid.triangles.size(), kNone) {
   struct Edge {
     std::uint32_t low, high, place;
     bool operator<(const Edge& o) const {

@@ -168,7 +168,7 @@ LearnedCases learn_cases(const plan::PlanInput& input, const plan::PlanResult& r
   LearnedCases out{SourceText::read(input.cases.path).text()};
   std::vector<plan::Case> known = input.cases.cases;
   for (const plan::SetupPlan& s : result.setups)
-    for (const plan::Operation& o : s.plans[s.best].operations) {
+    for (const plan::PlanOperation& o : s.plans[s.best].operations) {
       const plan::PlanTool& t = input.tools.at(o.tool);
       plan::Case c{.content = {input.work_material, std::string(to_string(t.use)), t.material, t.coated,
                                o.kind == plan::OperationKind::finish && input.fine, input.fast, t.tool.diameter_mm},

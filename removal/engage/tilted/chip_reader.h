@@ -44,7 +44,7 @@ class ChipReader {
   /// A stamp that left a surface.
   struct OtherStamp {
     std::int32_t stamp = -1;
-    Frame frame{ToolPose{}};
+    StampFrame frame{ToolPose{}};
     std::size_t turned_from = static_cast<std::size_t>(-1);  ///< Reading::number
     Mat3 turn = Mat3::Identity();                            ///< rotation from that stamp's frame to this one's
   };
@@ -65,7 +65,7 @@ class ChipReader {
   struct Reading {
     std::size_t k;       ///< index in the stretch
     std::size_t number;  ///< index among all stamps
-    Frame frame;
+    StampFrame frame;
     ToothMotion motion;
     /// Chip that a point may take beyond its motion bound, mm: the stamp before had another deflection when it left the
     /// surface there.
@@ -95,7 +95,7 @@ class ChipReader {
                      Buffers& buffers) const;
   static void make_room(Buffers& buffers);
   void add_pairs(const upright::TileArena& arena, const Reading& stamp, Shallow& p, Buffers& buffers) const;
-  float farther_mm(const upright::TileArena& arena, const Shallow& p, std::int32_t id, const Frame& frame) const;
+  float farther_mm(const upright::TileArena& arena, const Shallow& p, std::int32_t id, const StampFrame& frame) const;
   void thin_pairs(Buffers& buffers) const;
   void thin_general(Buffers& buffers) const;
   Depth depth(const upright::TileArena& arena, const Reading& stamp, const Shallow& p, std::size_t end_pair,

@@ -145,7 +145,7 @@ void Engager::Impl::cut(std::size_t k) {
   const StampDeflection deflection =
       rule.rigid ? StampDeflection{deflections->row(row), 0, {}} : StampDeflections(envelope, *deflections).of(row);
   if (!memory.knows(static_cast<std::int32_t>(from + k))) memory.add(deflections->row(row));
-  const Frame frame(stamps[k].pose);
+  const StampFrame frame(stamps[k].pose);
   const Carving stamp{envelope.shape,
                       profile,
                       frame,
@@ -212,7 +212,7 @@ double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stam
     tbb::parallel_for(std::size_t{0}, by_tile.size(), [&](std::size_t t) {
       cancellation_point();
       for (const std::size_t k : by_tile[t]) {
-        const Frame frame(part[k].pose);
+        const StampFrame frame(part[k].pose);
         const Carving stamp{shape,           profile,
                             frame,           stock.voxel_mm(),
                             stock.band_mm(), options.first_id + static_cast<std::int32_t>(from + k),

@@ -147,15 +147,16 @@ void TileArena::reset_slots(const Stock& stock, const CutterShape& shape, std::s
                             double reach_mm) {
   const double tile_mm = Tile::kCore * voxel_, around = shape.radius_mm + reach_mm;
   const Vec3 bands = Vec3::Constant(reach_mm);
-  const tilted::Bounds within{stock.min_mm() - bands, stock.max_mm() + bands};
+  const tilted::ReachedBox within{stock.min_mm() - bands, stock.max_mm() + bands};
   const auto bounds_of = [&](const ToolPose& pose) {
     if (!pose.upright()) return tilted::bounds_in(shape, pose, reach_mm, within);
     const Vec3& tip = pose.tip_mm;
-    return tilted::Bounds{tip - Vec3(around, around, reach_mm), {tip.x() + around, tip.y() + around, within.hi.z()}};
+    return tilted::ReachedBox{tip - Vec3(around, around, reach_mm),
+                              {tip.x() + around, tip.y() + around, within.hi.z()}};
   };
   auto [lo, hi] = bounds_of(stamps.front().pose);
   for (const auto& s : stamps) {
-    const tilted::Bounds own = bounds_of(s.pose);
+    const tilted::ReachedBox own = bounds_of(s.pose);
     lo = lo.cwiseMin(own.lo), hi = hi.cwiseMax(own.hi);
   }
   slots_.reset(tile_of(lo.cwiseMax(within.lo), tile_mm), tile_of(hi.cwiseMin(within.hi), tile_mm));
