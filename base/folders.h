@@ -1,5 +1,6 @@
 #pragma once
-// A process that reads and writes in one folder alone: camber --only-in, and the runs of camber ui.
+// Folders of a process: the one in which it reads and writes alone (camber --only-in, the runs of camber ui), and
+// temporary ones.
 #include <string>
 
 namespace camber {

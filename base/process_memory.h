@@ -1,5 +1,5 @@
 #pragma once
-// Available memory.
+// Memory: what is available, what this process takes, and what it gives back.
 
 namespace camber {
 

@@ -1,5 +1,5 @@
 #pragma once
-// A long list of which only some parts are in memory.
+// A long list of which only some parts are in memory, and the addresses for it.
 #include <algorithm>
 #include <cstddef>
 #include <memory>

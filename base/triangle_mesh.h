@@ -1,5 +1,5 @@
 #pragma once
-// Triangle meshes from STL files.
+// Triangle meshes from files: STL, and STEP where the build can read it.
 #include <array>
 #include <cstdint>
 #include <string>

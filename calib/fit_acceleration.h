@@ -1,5 +1,5 @@
 #pragma once
-// The ramp after interpolation: width of the moving average of an axis command.
+// How a control accelerates: the ramp after interpolation, its jerk limit, and the accelerations that traces show.
 #include <array>
 #include <optional>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// The parameters of fit-force, and the residuals that they leave.
+// The parameters of fit-force, the values that they start from, and the residuals that they leave.
 #include <string>
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Speeds that the axes of a trace hold within a move.
+// Lines of a trace or a log: speeds that axes hold in them, their top speeds, and those with rotary motion.
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -8,18 +8,17 @@
 // there is something to cut. For each operation of the job:
 //
 // 1. tip_field        the lowest height of the tip over (x, y): the part's offset surface, with the allowance. Every
-// path
-//                     stays at or above it. region and level_region say where the axis may be, outline traces borders.
-// 2. levels, passes   operation lays passes: loops at equal distances from walls (level_region, loop_order), rows, rows
+//                     path stays at or above it. axis_region and level_region say where the axis may be, outline traces
+//                     borders.
+// 2. levels, passes   operation lays passes: loops at equal distances from walls (level_region, levels), rows, rows
 //                     with a scallop height, or holes; cut_levels goes from level to level. standing has the material
 //                     that the planner sees, clear_height an upper bound of all that can stand.
 // 3. approach         gets the tool to a pass and into the material: from the side, along the pass, straight down.
 //                     slotting replaces full cuts by trochoids (trochoid) where the load asks for it.
-// 4. runner           runs passes as lines and arcs (path_piece) in ticks of the control (motion, speed_ahead), cuts
-// each
-//                     tooth passing in the stock, and writes the program (program_writer).
-// 5. load_follower    reads the load of each passing (simulate/load_probe) and sets feed and depths by load_rule;
-//                     felt_hardness remembers where the material was harder than expected.
+// 4. runner           runs passes as lines and arcs (path_piece) in ticks of the control (feed_motion), cuts each tooth
+//                     passing in the stock, and writes the program (program_writer).
+// 5. load_follower    reads the load of each passing (simulate/load_probe) and sets feed and depths by load_rule, which
+//                     also remembers where the material was harder than expected.
 // 6. part_check       says how deep the path goes into the part and what is left on it.
 //
 // Units: mm, s, N, rad; positions are tips in the frame of the part. docs/copy.md and docs/copy-load.md have the

@@ -1,5 +1,5 @@
 #pragma once
-// Levels: the heights at which roughing cuts.
+// Levels: the heights at which roughing cuts, and the order of the loops at one of them.
 #include <optional>
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The modes of a job's tools, and their teeth.
+// The modes of a job's tools, those of a stepped beam on springs, and the teeth.
 #include <limits>
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Cycle time of a program on a machine: cutting, positioning, spindle, tool changes, codes, by tool.
+// Cycle time of a program on a machine: cutting, positioning, spindle, tool changes, codes, by tool; of each move.
 #include <cstdint>
 #include <iterator>
 #include <string_view>

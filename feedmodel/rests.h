@@ -1,5 +1,6 @@
 #pragma once
-// Rests: places at which the path stops because the control waits for something that is not motion.
+// Rests: places at which the path stops because the control waits for something that is not motion, and the time that
+// a spindle takes.
 #include <cstdint>
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Features of a part on the predicted surface, measured as the instrument would.
+// Features of a part on the predicted surface, measured as the instrument would; how sure the model is of them.
 #include <optional>
 #include <span>
 #include <string>

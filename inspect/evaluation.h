@@ -1,5 +1,5 @@
 #pragma once
-// A feature being evaluated; private to inspect/.
+// A feature being evaluated, and where an instrument reads it; private to inspect/.
 #include <array>
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// Tables of a job that other readers share.
+// Tables of a job that other readers share: tools, modes, stock.
 #include <filesystem>
 #include <map>
 #include <string>

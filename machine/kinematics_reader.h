@@ -1,5 +1,5 @@
 #pragma once
-// [kinematics] and the tables of the rotary axes. Internal to machine/.
+// [kinematics], the tables of the rotary axes and [[body]]. Internal to machine/.
 #include <string>
 
 #include "machine/machine.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Comments of an NC program as text, with the code beside them; for what CAM systems write there for people.
+// Comments of an NC program as text, with the code beside them, and the blank that CAM systems write there.
 #include <cstddef>
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// Solids as layers of upright walls.
+// Solids as layers of upright walls, and regions between loops as triangles.
 #include <array>
 #include <vector>
 

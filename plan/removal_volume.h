@@ -1,5 +1,5 @@
 #pragma once
-// What has to be removed: blank minus part, as cells and holes.
+// What has to be removed: blank minus part, as holes and as cells between the planes of the faces.
 #include <array>
 #include <functional>
 #include <utility>

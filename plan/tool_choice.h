@@ -1,5 +1,5 @@
 #pragma once
-// Which tool machines a feature.
+// Which tool machines a feature, and under which conditions.
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// Closed solids as triangles, with exact volumes.
+// Closed solids as triangles, with exact volumes and the neighbours of each triangle.
 #include <array>
 #include <cstdint>
 #include <string>

@@ -1,5 +1,6 @@
 #pragma once
-// Form error: points of the target surface with the height of the machined surface along their normals, and statistics.
+// Form error: points of the target surface with the height of the machined surface along their normals, statistics, and
+// the part as a mesh.
 #include <array>
 #include <cstdint>
 #include <memory>
