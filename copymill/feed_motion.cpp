@@ -67,7 +67,7 @@ double along(const Vec3& limits, const Vec3& direction) {
 
 }  // namespace
 
-FeedMotion::Motion(const machine::Machine& machine) : period_s_(machine.control.period_s) {
+FeedMotion::FeedMotion(const machine::Machine& machine) : period_s_(machine.control.period_s) {
   for (int a = 0; a < 3; ++a) {
     const machine::Axis& axis = machine.axis[static_cast<std::size_t>(a)];
     velocity_limit_[a] = std::min({axis.max_velocity_mm_per_s, axis.max_feed_mm_per_s, kFastest});

@@ -26,7 +26,7 @@ bool comes_before(const Rank& a, const Rank& b) {
   return a.from_middle_mm < b.from_middle_mm - kEqual_mm;
 }
 
-MachinedSpace::Workpiece(const RemovalVolume& removal, const std::vector<VolumePrimitive>& primitives)
+MachinedSpace::MachinedSpace(const RemovalVolume& removal, const std::vector<VolumePrimitive>& primitives)
     : removal_(removal), primitives_(primitives), owners_(removal.grid.size(), kAir), removed_(primitives.size()) {
   const CellGrid& g = removal.grid;
   for (int x = 0; x < g.count(0); ++x)

@@ -41,7 +41,7 @@ struct Unmachined {
 };
 
 /// The program of a plan, and the cut along it.
-struct PlanFigures {
+struct PlanProgramFigures {
   double time_s = 0;  ///< by the feed model, with tool changes and spindle
   double removed_mm3 = 0;
   double left_p95_um = 0, left_max_um = 0;  ///< on the part, where tools can touch it
@@ -56,9 +56,9 @@ struct PlannedDivision {
   std::vector<PlanOperation> operations;
   std::vector<Unmachined> unmachined;
   int tool_changes = 0;
-  double nominal_time_s = 0;           ///< equation (3)
-  std::optional<PlanFigures> program;  ///< not given: none was made
-  double form_error_p95_mm = 0;        ///< percentile over the last operations at each surface, weighted by area
+  double nominal_time_s = 0;                  ///< equation (3)
+  std::optional<PlanProgramFigures> program;  ///< not given: none was made
+  double form_error_p95_mm = 0;               ///< percentile over the last operations at each surface, weighted by area
   bool complete() const { return unmachined.empty(); }
 };
 
