@@ -222,7 +222,6 @@ constexpr double kSameFraction = 2e-3;      // of a limit: the axis is at it
 constexpr double kBelowFraction = 5e-3;     // of a limit: the axis is not at it
 constexpr double kAskedMore = 1.01;         // times the speed
 constexpr double kResolvedFraction = 1e-4;  // of a speed
-constexpr double kStill = 1e-2;             // mm/s or degrees/s
 
 bool at_limit(const HeldSpeed& held, std::size_t axis, const JointSpeeds& highest) {
   const double speed = held.speed[axis];
