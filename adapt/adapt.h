@@ -10,7 +10,7 @@
 #include "adapt/load.h"
 #include "adapt/speed_change.h"
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/setup.h"
 
 namespace camber::adapt {

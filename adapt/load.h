@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/adapt_settings.h"
 
 namespace camber::adapt {
 

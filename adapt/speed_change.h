@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/predict.h"
 
 namespace camber::adapt {

@@ -19,7 +19,7 @@
 #include "compensate/verify.h"
 #include "feedmodel/fitted_range.h"
 #include "machine/assumptions.h"
-#include "machine/levers.h"
+#include "machine/compensation_settings.h"
 #include "report/feature_results.h"
 #include "report/report_data.h"
 #include "report/summary.h"

@@ -7,9 +7,8 @@
 #include <fmt/format.h>
 
 #include "machine/assumptions.h"
-#include "machine/job_programs.h"
+#include "machine/job_file.h"
 #include "machine/set_number.h"
-#include "machine/unprogrammed_job.h"
 
 namespace camber {
 

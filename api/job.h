@@ -2,7 +2,7 @@
 // What stands behind camber::Machine and camber::Job.
 #include "base/diagnostics.h"
 #include "camber/job.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber {
 

@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "kinematics/machine_program.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 

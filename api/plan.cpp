@@ -1,5 +1,5 @@
 // The namespace plan comes before the function of that name: clang takes it in no other order.
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 
 #include "camber/plan.h"
 
@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "api/run.h"
+#include "base/folders.h"
 #include "base/output_file.h"
-#include "base/temporary_folder.h"
 #include "kinematics/control_options.h"
 #include "machine/machine_presets.h"
 #include "nc/dialect.h"
@@ -175,7 +175,7 @@ LearnedCases learn_cases(const plan::PlanInput& input, const plan::PlanResult& r
   LearnedCases out{input.cases.path, SourceText::read(input.cases.path).text()};
   std::vector<plan::Case> known = input.cases.cases;
   for (const plan::SetupPlan& s : result.setups)
-    for (const plan::Operation& o : s.plans[s.best].operations) {
+    for (const plan::PlanOperation& o : s.plans[s.best].operations) {
       const plan::PlanTool& t = input.tools.at(o.tool);
       plan::Case c{.content = {input.work_material, std::string(to_string(t.use)), t.material, t.coated,
                                o.kind == plan::OperationKind::finish && input.fine, input.fast, t.tool.diameter_mm},
@@ -193,7 +193,7 @@ LearnedCases learn_cases(const plan::PlanInput& input, const plan::PlanResult& r
   return out;
 }
 
-PlannedOperation operation_of(const plan::Operation& o, std::size_t setup) {
+PlannedOperation operation_of(const plan::PlanOperation& o, std::size_t setup) {
   const plan::Conditions& c = o.conditions;
   return {.setup = setup,
           .primitive = o.primitive,
@@ -228,7 +228,7 @@ PlanResult result_of(const plan::PlanResult& planned) {
                                 p.complete(), i == first.best});
   }
   for (std::size_t s = 0; s < planned.setups.size(); ++s)
-    for (const plan::Operation& o : planned.setups[s].plans[planned.setups[s].best].operations)
+    for (const plan::PlanOperation& o : planned.setups[s].plans[planned.setups[s].best].operations)
       out.operations.push_back(operation_of(o, s));
   return out;
 }

@@ -7,9 +7,8 @@
 #include <tbb/task_group.h>
 
 #include "api/feed_points.h"
-#include "base/first_failure.h"
-#include "base/freed_memory.h"
 #include "base/output_file.h"
+#include "base/process_memory.h"
 #include "base/stage.h"
 #include "calib/column_map.h"
 #include "calib/trace.h"

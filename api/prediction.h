@@ -9,7 +9,7 @@
 #include "api/run.h"
 #include "base/diagnostics.h"
 #include "camber/predict.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/form_error.h"
 #include "simulate/pieces.h"
 #include "simulate/setup.h"

@@ -6,7 +6,7 @@
 #include "api/job.h"
 #include "api/program.h"
 #include "api/run.h"
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "camber/resegment.h"
 #include "checks/plausibility.h"
 #include "kinematics/control_options.h"

@@ -6,7 +6,7 @@
 #include "api/prediction.h"
 #include "base/diagnostics.h"
 #include "distribute/section_run.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::api {
 

@@ -18,7 +18,7 @@
 #include "kinematics/machine_program.h"
 #include "kinematics/offset_check.h"
 #include "machine/assumptions.h"
-#include "machine/cases.h"
+#include "machine/cycle_cases.h"
 #include "machine/set_number.h"
 #include "nc/language.h"
 #include "report/path_card.h"

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "base/confined_files.h"
+#include "base/folders.h"
 
 namespace camber {
 

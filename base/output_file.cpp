@@ -18,8 +18,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/confined_files.h"
 #include "base/diagnostics.h"
+#include "base/folders.h"
 
 namespace camber {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "base/units.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 
 namespace camber::calib {
 namespace {

@@ -34,7 +34,7 @@ HeldOutRun judge(const FeedRun& run, const FitFeedResult& fit) {
   HeldOutRun held;
   held.program_name = run.program_name;
   held.converged = fit.converged;
-  const std::vector<Part> parts = parts_of(run.program, fit.machine);
+  const std::vector<TracePart> parts = parts_of(run.program, fit.machine);
   held.accuracy = feed_accuracy(run.trace, run.program, fit.machine, parts, {});
   held.constant_feed = constant_feed_accuracy(run.trace, run.program, fit.machine, parts, {});
   held.stop_every_block = feed_accuracy(run.trace, run.program, stopping(fit.machine), parts, {});

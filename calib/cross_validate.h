@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 
 namespace camber::calib {
 

@@ -46,7 +46,7 @@ void add_lines(CycleAccuracy& out, const std::vector<double>& measured, const nc
     if (line != last_line) kind.measured_s += measured[line];  // of several moves of one line, with the first
     last_line = line;
   }
-  for (const Part& part : parts_of(program)) {
+  for (const TracePart& part : parts_of(program)) {
     MeasuredPart row{part.line_first, part.line_last, {}};
     for (std::uint32_t line = part.line_first; line <= part.line_last && line < measured.size(); ++line) {
       row.time.measured_s += measured[line];

@@ -8,7 +8,7 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
-#include "calib/rotary_lines.h"
+#include "calib/line_speeds.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/joint_map.h"
 
@@ -94,7 +94,7 @@ struct Window {
 };
 
 /// Windows of all parts in one walk. Parts are in the order of their lines.
-std::vector<Window> windows_of(const Record& r, const std::vector<Part>& parts) {
+std::vector<Window> windows_of(const Record& r, const std::vector<TracePart>& parts) {
   std::vector<Window> windows(parts.size());
   std::size_t i = 0;
   const std::size_t n = r.line.size();
@@ -263,8 +263,8 @@ std::vector<double> programmed_line_times_s(const nc::Interpretation& program, c
 
 }  // namespace
 
-std::vector<Part> parts_of(const nc::Interpretation& program) {
-  std::vector<Part> parts;
+std::vector<TracePart> parts_of(const nc::Interpretation& program) {
+  std::vector<TracePart> parts;
   bool open = false;
   for (const nc::Move& move : program.moves) {
     const bool cutting = move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc;
@@ -282,10 +282,10 @@ std::vector<Part> parts_of(const nc::Interpretation& program) {
   return parts;
 }
 
-std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Machine& machine) {
+std::vector<TracePart> parts_of(const nc::Interpretation& program, const machine::Machine& machine) {
   if (!kinematics::has_rotary_motion(program, machine)) return parts_of(program);
   const std::vector<LineFeed> lines = feeds_of_lines(program, machine);
-  std::vector<Part> parts;
+  std::vector<TracePart> parts;
   const LineFeed* last = nullptr;  // of the open part
   double last_f = 0;
   for (const nc::Move& move : program.moves) {
@@ -309,12 +309,12 @@ std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Mac
   return parts;
 }
 
-std::vector<Part> read_parts(const std::string& path) {
+std::vector<TracePart> read_parts(const std::string& path) {
   const SourceText source = SourceText::read(path);
   std::istringstream text(source.text());
   std::string line, field;
   std::vector<std::string> header;
-  std::vector<Part> parts;
+  std::vector<TracePart> parts;
   while (std::getline(text, line)) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.empty()) continue;
@@ -360,7 +360,7 @@ PartTimes part_times(const FeedAccuracy& accuracy) {
 }
 
 FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program,
-                                    const machine::Machine& machine, const std::vector<Part>& parts,
+                                    const machine::Machine& machine, const std::vector<TracePart>& parts,
                                     const FeedAccuracyOptions& options) {
   const Record traced = record_of(trace, program, machine);
   const std::vector<double> line_s = programmed_line_times_s(program, machine);
@@ -394,7 +394,7 @@ FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpret
 }
 
 FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine,
-                           const std::vector<Part>& parts, const FeedAccuracyOptions& options) {
+                           const std::vector<TracePart>& parts, const FeedAccuracyOptions& options) {
   const Record traced = record_of(trace, program, machine);
   const Record model = record_of(program, machine);
   FeedAccuracy result;

@@ -13,19 +13,19 @@
 namespace camber::calib {
 
 /// A stretch of consecutive lines of the program that is judged as one.
-struct Part {
+struct TracePart {
   std::uint32_t line_first = 0, line_last = 0;  ///< 1-based, both included
   double feed_mm_per_s = 0;                     ///< programmed
 };
 
 /// Reads a CSV with the columns line_first, line_last, feed_mm_min (others are left out). Throws InputError.
-std::vector<Part> read_parts(const std::string& path);
+std::vector<TracePart> read_parts(const std::string& path);
 
 /// Parts of a program without such a list: runs of feed moves of one feed between rapids, dwells and rests.
-std::vector<Part> parts_of(const nc::Interpretation& program);
+std::vector<TracePart> parts_of(const nc::Interpretation& program);
 /// The same for any machine: in programs with rotary motion the feed of a part is along its path (degrees/s where only
 /// rotary axes move), and moves in inverse time (G93) follow each other in one part.
-std::vector<Part> parts_of(const nc::Interpretation& program, const machine::Machine& machine);
+std::vector<TracePart> parts_of(const nc::Interpretation& program, const machine::Machine& machine);
 
 /// What the machine does at a place of the path. Corner: within 20 ms of the change to another block; arc: inside an
 /// arc; feed: at 98 % of the programmed feed or more; ramp: between them.
@@ -38,7 +38,7 @@ struct SpeedProfiles {
 };
 
 struct PartAccuracy {
-  Part part;
+  TracePart part;
   double time_trace_s = 0, time_model_s = 0;  ///< commanded
   double speed_rms_percent = 0;               ///< over the stations, in % of the programmed feed
   double speed_p95_percent = 0;
@@ -78,13 +78,13 @@ PartTimes part_times(const FeedAccuracy& accuracy);
 /// Baseline: every part at its programmed feed from its first to its last point, without the machine's lag. Times are
 /// those of the parts alone.
 FeedAccuracy constant_feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program,
-                                    const machine::Machine& machine, const std::vector<Part>& parts,
+                                    const machine::Machine& machine, const std::vector<TracePart>& parts,
                                     const FeedAccuracyOptions& options);
 
 /// Path speed of the actual axes over the fraction of path length, predicted against traced. A part begins with its
 /// first commanded sample and ends when another line is commanded (its tail, where the axes still come up
 /// while line is 0, belongs to it). Parts that the trace does not hold are left out.
 FeedAccuracy feed_accuracy(const ServoTrace& trace, const nc::Interpretation& program, const machine::Machine& machine,
-                           const std::vector<Part>& parts, const FeedAccuracyOptions& options);
+                           const std::vector<TracePart>& parts, const FeedAccuracyOptions& options);
 
 }  // namespace camber::calib

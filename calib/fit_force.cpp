@@ -12,7 +12,6 @@
 
 #include "base/units.h"
 #include "calib/force_residuals.h"
-#include "calib/force_start.h"
 
 namespace camber::calib {
 namespace {

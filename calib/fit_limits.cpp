@@ -13,7 +13,7 @@
 
 #include "base/units.h"
 #include "calib/bounded_least_squares.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "kinematics/joint_map.h"
 
 namespace camber::calib {

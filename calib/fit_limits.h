@@ -6,7 +6,7 @@
 
 #include "calib/feed_accuracy.h"
 #include "calib/fit_drive.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "machine/machine.h"
 #include "nc/move.h"
 
@@ -15,7 +15,7 @@ namespace camber::calib {
 /// A stretch of lines whose commanded time is known.
 struct TimedLines {
   const nc::Interpretation* program = nullptr;
-  std::vector<Part> parts;
+  std::vector<TracePart> parts;
   std::vector<double> time_s;   ///< of each part; 0: not in the trace
   std::vector<char> kept_back;  ///< of each part
   std::vector<int> group;       ///< of each part: what lies within one part of the program errs together

@@ -13,7 +13,6 @@
 
 #include "calib/parts_unknowns.h"
 #include "inspect/evaluate.h"
-#include "inspect/model_error.h"
 #include "kinematics/machine_program.h"
 #include "machine/force_law.h"
 #include "machine/set_number.h"

@@ -12,7 +12,7 @@
 #include "calib/bounded_least_squares.h"
 #include "calib/fit_limits.h"
 #include "feedmodel/fitted_range.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 
 namespace camber::calib {
 namespace {

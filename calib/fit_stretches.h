@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "calib/stretch.h"
 #include "machine/machine.h"
 

@@ -9,8 +9,7 @@
 #include <string>
 
 #include "base/units.h"
-#include "calib/held_speed.h"
-#include "calib/top_speed.h"
+#include "calib/line_speeds.h"
 #include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"
 

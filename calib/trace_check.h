@@ -1,7 +1,7 @@
 #pragma once
 // Whether a trace is of the program that it is given with, run at its programmed feeds.
 #include "base/diagnostics.h"
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 
 namespace camber::calib {
 

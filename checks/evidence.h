@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "machine/tool_proposal.h"
 #include "simulate/height_survey.h"
 #include "simulate/predict.h"

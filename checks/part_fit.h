@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "machine/job.h"
-#include "removal/part_mesh.h"
+#include "machine/job_file.h"
+#include "removal/form_error.h"
 #include "simulate/predict.h"
 
 namespace camber::checks {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "checks/part_fit.h"
 #include "checks/rules.h"
 #include "simulate/setup_checks.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/predict.h"
 
 namespace camber::checks {

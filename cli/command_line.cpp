@@ -12,7 +12,7 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
-#include "base/confined_files.h"
+#include "base/folders.h"
 #include "base/output_file.h"
 #include "cli/console.h"
 #include "cli/mpi_run.h"

@@ -9,8 +9,9 @@
 
 #include "api/compensation.h"
 #include "api/job.h"
+#include "base/folders.h"
 #include "base/output_file.h"
-#include "base/temporary_folder.h"
+#include "base/stage.h"
 #include "camber/verify.h"
 #include "cli/console.h"
 #include "cli/job_commands.h"
@@ -18,9 +19,16 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/rounds_progress.h"
+#include "compensate/trial.h"
 #include "compensate/verify.h"
-#include "machine/levers.h"
+#include "machine/assumptions.h"
+#include "machine/compensation_settings.h"
+#include "machine/job_file.h"
+#include "report/feature_results.h"
 #include "report/joined_json.h"
+#include "report/report_data.h"
+#include "report/summary.h"
+#include "report/verdict_text.h"
 
 namespace camber::cli {
 namespace {

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include "cli/console.h"
+#include "cli/mpi_run.h"
+#include "cli/outputs.h"
+#include "compensate/verify.h"
+#include "machine/job_file.h"
 
 namespace camber::cli {
 

@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
-#include "base/confined_files.h"
+#include "base/folders.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "ui/server.h"

@@ -37,7 +37,7 @@
 #include "compensate/safety.h"
 #include "compensate/trial.h"
 #include "compensate/uncertainty.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/stock.h"
 #include "simulate/setup.h"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 
 namespace camber::compensate {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/form_error.h"
 #include "simulate/predict.h"
 

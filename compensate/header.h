@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "compensate/compensate.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::compensate {
 

@@ -5,7 +5,7 @@
 
 #include "base/diagnostics.h"
 #include "base/geometry.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/setup.h"
 
 namespace camber::compensate {

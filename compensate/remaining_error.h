@@ -7,7 +7,8 @@
 #include "compensate/attribution.h"
 #include "compensate/error_split.h"
 #include "compensate/safety.h"
-#include "machine/job.h"
+#include "machine/compensation_settings.h"
+#include "machine/job_file.h"
 #include "removal/form_error.h"
 
 namespace camber::compensate {

@@ -8,7 +8,7 @@
 
 #include "base/diagnostics.h"
 #include "compensate/attribution.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/form_error.h"
 #include "simulate/predict.h"
 #include "simulate/travel.h"

@@ -7,7 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "compensate/compensate.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/setup.h"
 
 namespace camber::compensate {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "copymill/pass.h"
+#include "copymill/path_piece.h"
 #include "copymill/runner.h"
 #include "copymill/standing.h"
 #include "copymill/tip_field.h"
@@ -25,7 +25,8 @@ struct ApproachOptions {
 /// Rapids keep above the runner's ClearHeight.
 class Approach {
  public:
-  Approach(const Cut& cut, const TipField& field, Standing& standing, Runner& runner, const ApproachOptions& options)
+  Approach(const OperationCut& cut, const TipField& field, Standing& standing, Runner& runner,
+           const ApproachOptions& options)
       : cut_(cut), field_(field), standing_(standing), runner_(runner), options_(options) {}
 
   /// Cuts the stretches of a pass that meet material.
@@ -65,7 +66,7 @@ class Approach {
   }
   Runner::Ended ramp(Pass& piece, double lift_mm);
 
-  const Cut& cut_;
+  const OperationCut& cut_;
   const TipField& field_;
   Standing& standing_;
   Runner& runner_;

@@ -6,8 +6,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include "copymill/underside.h"
-
 namespace camber::copymill {
 namespace {
 

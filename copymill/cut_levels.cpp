@@ -8,7 +8,6 @@
 #include "base/stage.h"
 #include "copymill/level_region.h"
 #include "copymill/levels.h"
-#include "copymill/loop_order.h"
 #include "copymill/operation.h"
 #include "copymill/slotting.h"
 

@@ -9,7 +9,7 @@ namespace {
 constexpr double kClearance_mm = 1;      ///< above material; feed begins here
 constexpr double kBackToDepth_mm = 0.5;  ///< a peck begins so far above the last one's bottom
 
-Runner::Ended drill(const Cut& cut, const Standing& standing, Runner& runner, const Vec2& at) {
+Runner::Ended drill(const OperationCut& cut, const Standing& standing, Runner& runner, const Vec2& at) {
   const machine::CopyOperation& o = cut.operation;
   const auto [bottom, top] = *o.region.z_mm;
   const double begin = std::max({top, standing.highest_under_mm(at, cut.shape.radius_mm),
@@ -34,7 +34,7 @@ Runner::Ended drill(const Cut& cut, const Standing& standing, Runner& runner, co
 
 }  // namespace
 
-void drill_holes(const Cut& cut, Standing& standing, Runner& runner, double safe_z_mm) {
+void drill_holes(const OperationCut& cut, Standing& standing, Runner& runner, double safe_z_mm) {
   runner.begin(cut, standing, safe_z_mm, nullptr, (*cut.operation.region.z_mm)[0]);
   const machine::CopyOperation& o = cut.operation;
   std::vector<Vec2> holes = o.holes_mm;

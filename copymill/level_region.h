@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "copymill/axis_region.h"
 #include "copymill/grid.h"
 #include "copymill/outline.h"
-#include "copymill/pass.h"
-#include "copymill/region.h"
+#include "copymill/path_piece.h"
 #include "copymill/tip_field.h"
 
 namespace camber::copymill {

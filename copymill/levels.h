@@ -1,10 +1,12 @@
 #pragma once
-// Levels: the heights at which roughing cuts.
+// Levels: the heights at which roughing cuts, and the order of the loops at one of them.
+#include <optional>
 #include <vector>
 
 #include "base/geometry.h"
-#include "base/stl.h"
-#include "copymill/region.h"
+#include "base/triangle_mesh.h"
+#include "copymill/axis_region.h"
+#include "copymill/path_piece.h"
 
 namespace camber::copymill {
 
@@ -42,5 +44,30 @@ struct BoxLevels {
 /// is under them, without it.
 BoxLevels box_levels(double top_mm, double bottom_mm, std::vector<double> floors_mm, const AxisRegion& region,
                      double allowance_mm);
+
+/// Loops of a region at one distance after the other. A loop may be cut when all loops of the distance before that lie
+/// beside it are; of those that may, the nearest to the tool comes next. So the tool stays at a boss or in a corner
+/// until it has come to the wall there, and never has more than one distance beside it.
+class LoopOrder {
+ public:
+  /// The loops of the next distance, `apart_mm` from those of the one before. `may_turn`: open ones may be followed
+  /// from either end.
+  void add(std::vector<Pass> loops, double apart_mm, bool may_turn);
+  /// The next one, a closed one beginning as near to the tool as its points allow; nothing when all are taken. A tool
+  /// that is nowhere yet gets the first.
+  std::optional<Pass> next(const std::optional<Vec3>& tip);
+
+ private:
+  struct Loop {
+    Pass pass;
+    std::vector<std::size_t> after;  ///< loops that have to be cut before
+    bool may_turn = false;
+    bool taken = false;
+  };
+  bool may_be_next(const Loop& loop) const;
+
+  std::vector<Loop> loops_;
+  std::size_t first_of_last_ = 0;  ///< distance
+};
 
 }  // namespace camber::copymill

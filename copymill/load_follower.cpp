@@ -57,7 +57,7 @@ LoadFollower::LoadFollower(const machine::Job& job, const machine::CopyOperation
   band_.up_below = kUpBelow, band_.aim = kAim, band_.up_step = kUpStep;
   band_.teeth = job.tools.at(operation.tool).flutes;
   const double radial = std::max(operation.radial_depth_mm, 1e-3), axial = std::max(operation.axial_depth_mm, 1e-3);
-  rule_.emplace(band_, Conditions{operation.feed_mm_per_s, radial, axial});
+  rule_.emplace(band_, LoadConditions{operation.feed_mm_per_s, radial, axial});
 }
 
 double LoadFollower::radial_mm() const { return rule_ ? rule_->conditions().radial_mm : operation_.radial_depth_mm; }

@@ -3,11 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "copymill/felt_hardness.h"
 #include "copymill/load_rule.h"
 #include "machine/copy_operations.h"
-#include "machine/job.h"
-#include "removal/step_engagement.h"
+#include "machine/job_file.h"
+#include "removal/engagement.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/load_probe.h"

@@ -5,6 +5,31 @@
 #include <cmath>
 
 namespace camber::copymill {
+
+std::uint64_t FeltHardness::cell(const Vec3& place, int di, int dj) const {
+  const auto index = [&](double v, int shift) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(std::lround(v / cell_mm_) + shift));
+  };
+  return index(place.x(), di) << 32 | index(place.y(), dj);
+}
+
+void FeltHardness::feel(const Vec3& chips, double ratio) {
+  constexpr double kForget = 0.2;
+  const auto [found, first] = ratio_.try_emplace(cell(chips, 0, 0), static_cast<float>(ratio));
+  if (first) return;
+  const double before = found->second;
+  found->second = static_cast<float>(ratio > before ? ratio : before + kForget * (ratio - before));
+}
+
+double FeltHardness::at(const Vec3& chips) const {
+  double out = 1;
+  for (int di = -1; di <= 1; ++di)
+    for (int dj = -1; dj <= 1; ++dj)
+      if (const auto found = ratio_.find(cell(chips, di, dj)); found != ratio_.end())
+        out = std::max(out, static_cast<double>(found->second));
+  return out;
+}
+
 namespace {
 
 /// Factor on the lowest feed: below it a passing counts as cut at the lowest.
@@ -80,7 +105,8 @@ std::string_view text_of(Cause cause) {
   return "";
 }
 
-LoadRule::LoadRule(const LoadBand& band, const Conditions& nominal) : band_(band), nominal_(nominal), now_(nominal) {
+LoadRule::LoadRule(const LoadBand& band, const LoadConditions& nominal)
+    : band_(band), nominal_(nominal), now_(nominal) {
   assert(band.limit > 0 && band.teeth > 0 && nominal.feed_mm_per_s > 0);
   assert(band.up_below <= band.aim && band.aim <= 1 && band.lowest <= 1 && band.highest >= 1);
   now_.feed_mm_per_s = std::min(nominal.feed_mm_per_s, highest_feed());
@@ -97,10 +123,10 @@ double LoadRule::share_at(double feed_mm_per_s) const {
   return greatest;
 }
 
-void LoadRule::set(double Conditions::*what, double to, Cause cause, const Felt& passing, double share) {
-  const Quantity quantity = what == &Conditions::feed_mm_per_s ? Quantity::feed
-                            : what == &Conditions::radial_mm   ? Quantity::radial_depth
-                                                               : Quantity::axial_depth;
+void LoadRule::set(double LoadConditions::*what, double to, Cause cause, const Felt& passing, double share) {
+  const Quantity quantity = what == &LoadConditions::feed_mm_per_s ? Quantity::feed
+                            : what == &LoadConditions::radial_mm   ? Quantity::radial_depth
+                                                                   : Quantity::axial_depth;
   if (std::abs(now_.*what - to) < kSame) return;
   log_.push_back({passing.t_s, passing.place_mm, quantity, now_.*what, to, cause, share});
   now_.*what = to;
@@ -121,7 +147,7 @@ void LoadRule::in_air(const Felt& passing) {
   turn_.clear();
   since_step_ = over_at_lowest_ = 0;
   if (!replan_)
-    set(&Conditions::feed_mm_per_s, std::min(nominal_.feed_mm_per_s, highest_feed()), Cause::in_air, passing, 0);
+    set(&LoadConditions::feed_mm_per_s, std::min(nominal_.feed_mm_per_s, highest_feed()), Cause::in_air, passing, 0);
 }
 
 void LoadRule::learn_hardness(const Felt& passing) {
@@ -135,13 +161,13 @@ void LoadRule::follow_feed(const Felt& passing) {
   const double share = share_at(now_.feed_mm_per_s);
   if (share > 1) {
     const double to = std::max(lowest_feed(), now_.feed_mm_per_s * band_.aim / share);
-    set(&Conditions::feed_mm_per_s, to, Cause::over_limit, passing, share);
+    set(&LoadConditions::feed_mm_per_s, to, Cause::over_limit, passing, share);
     since_step_ = 0;
   } else if (share < band_.up_below && since_step_ >= band_.teeth && !replan_) {
     const double step = band_.up_step * nominal_.feed_mm_per_s;
     // No step leads over the aim.
     const double to = std::min({now_.feed_mm_per_s + step, highest_feed(), now_.feed_mm_per_s * band_.aim / share});
-    set(&Conditions::feed_mm_per_s, to, Cause::below_band, passing, share);
+    set(&LoadConditions::feed_mm_per_s, to, Cause::below_band, passing, share);
     since_step_ = 0;
   }
 }
@@ -160,7 +186,7 @@ void LoadRule::follow_depths(const Felt& passing) {
 }
 
 bool LoadRule::lower_a_depth(const Felt& passing, double share) {
-  for (auto what : {&Conditions::radial_mm, &Conditions::axial_mm}) {
+  for (auto what : {&LoadConditions::radial_mm, &LoadConditions::axial_mm}) {
     const double lowest = band_.lowest_depth * nominal_.*what;
     if (now_.*what <= lowest + kSame) continue;
     const double to = std::max(lowest, now_.*what * std::min(band_.depth_step, band_.aim / share));
@@ -171,7 +197,7 @@ bool LoadRule::lower_a_depth(const Felt& passing, double share) {
 }
 
 bool LoadRule::raise_a_depth(const Felt& passing, double share) {
-  for (auto what : {&Conditions::axial_mm, &Conditions::radial_mm}) {
+  for (auto what : {&LoadConditions::axial_mm, &LoadConditions::radial_mm}) {
     const double to = std::min(nominal_.*what, now_.*what / band_.depth_step);
     if (to <= now_.*what + kSame) continue;
     if (share * to / now_.*what > kRoom) return false;

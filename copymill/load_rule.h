@@ -23,12 +23,33 @@
 #include <deque>
 #include <span>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "base/geometry.h"
 #include "simulate/cut.h"
 
 namespace camber::copymill {
+
+/// The ratio of felt to expected load, remembered by the place of the chips in X and Y, whatever their height: a
+/// loop beside one that has been cut, or the level below, need not find out again that a part of the material is hard.
+/// The ratio is that of mean torques, a sum in which every chip counts for itself. Lateral forces of chips on both
+/// sides of a border may cancel, and where some of them grow by 1.4 their sum may by 1.9.
+class FeltHardness {
+ public:
+  explicit FeltHardness(double cell_mm) : cell_mm_(cell_mm) {}
+
+  /// Takes a tooth passing. The value of a cell rises at once, and falls by a fifth of the difference.
+  void feel(const Vec3& chips, double ratio);
+  /// The greatest in the cell of a place and those beside it; 1 at least.
+  double at(const Vec3& chips) const;
+
+ private:
+  std::uint64_t cell(const Vec3& place, int di, int dj) const;
+
+  double cell_mm_;
+  std::unordered_map<std::uint64_t, float> ratio_;
+};
 
 enum class LoadKind : std::uint8_t { force, torque, power, deflection };
 /// N (lateral), N mm (greatest of a passing), W, mm.
@@ -47,7 +68,7 @@ struct LoadBand {
   double lowest_depth = 0.25;            ///< fraction of the nominal depths
 };
 
-struct Conditions {
+struct LoadConditions {
   double feed_mm_per_s = 0, radial_mm = 0, axial_mm = 0;
 };
 
@@ -91,11 +112,11 @@ class LoadRule {
  public:
   static constexpr double kRemembered = 1.06;
 
-  LoadRule(const LoadBand& band, const Conditions& nominal);
+  LoadRule(const LoadBand& band, const LoadConditions& nominal);
 
   void feel(const Felt& passing);
   /// Feed for the next tick; radial depth for the next row, axial depth for the next level.
-  const Conditions& conditions() const { return now_; }
+  const LoadConditions& conditions() const { return now_; }
   /// True after a depth has fallen: the tool has to leave the cut and go on with conditions(). Until replanned().
   bool replan() const { return replan_; }
   void replanned();
@@ -109,7 +130,7 @@ class LoadRule {
   /// Returns the ratio of felt to expected load.
   double hardness() const { return hardness_; }
   /// Notes that a place ahead allows no more than this feed; infinite: nothing ahead binds. For the log: keeping it is
-  /// up to the motion (copymill/speed_ahead.h).
+  /// up to the motion (copymill/feed_motion.h).
   void note_ahead(double t_s, const Vec3& place_mm, double feed_mm_per_s);
 
   const std::vector<Change>& log() const { return log_; }
@@ -128,10 +149,10 @@ class LoadRule {
   void follow_depths(const Felt& passing);
   bool lower_a_depth(const Felt& passing, double share);
   bool raise_a_depth(const Felt& passing, double share_at_nominal);
-  void set(double Conditions::*what, double to, Cause cause, const Felt& passing, double share);
+  void set(double LoadConditions::*what, double to, Cause cause, const Felt& passing, double share);
 
   LoadBand band_;
-  Conditions nominal_, now_;
+  LoadConditions nominal_, now_;
   std::deque<Passing> turn_;                                           ///< the last passings in material
   int air_ = 0, since_step_ = 0, over_at_lowest_ = 0, with_room_ = 0;  ///< passings
   double hardness_ = 1;

@@ -1,8 +1,8 @@
 #pragma once
 // The modes of copy milling: each makes its passes from the part and what stands, and cuts them.
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "copymill/approach.h"
-#include "copymill/region.h"
+#include "copymill/axis_region.h"
 #include "copymill/runner.h"
 #include "copymill/standing.h"
 #include "copymill/tip_field.h"
@@ -12,7 +12,7 @@ namespace camber::copymill {
 /// Everything that an operation works on.
 struct Workplace {
   const TriangleMesh& part;
-  const Cut& cut;
+  const OperationCut& cut;
   const TipField& field;
   const AxisRegion& region;
   Standing& standing;
@@ -30,6 +30,6 @@ bool cut_levels(const Workplace& place);
 bool cut_scallops(const Workplace& place);
 
 /// Holes, where they are asked for: the part is not looked at.
-void drill_holes(const Cut& cut, Standing& standing, Runner& runner, double safe_z_mm);
+void drill_holes(const OperationCut& cut, Standing& standing, Runner& runner, double safe_z_mm);
 
 }  // namespace camber::copymill

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "base/stl.h"
-#include "copymill/region.h"
+#include "base/triangle_mesh.h"
+#include "copymill/axis_region.h"
 #include "copymill/tip_field.h"
 #include "machine/copy_operations.h"
 #include "removal/cutter.h"

@@ -9,7 +9,7 @@
 
 #include "base/units.h"
 #include "kinematics/control_options.h"
-#include "removal/tile_size.h"
+#include "removal/stock.h"
 
 namespace camber::copymill {
 namespace {
@@ -65,7 +65,7 @@ Runner::Runner(const machine::Job& job, const CopyOptions& options, removal::Sto
   writer_->begin();
 }
 
-void Runner::begin(const Cut& cut, Standing& standing, double safe_z, PathDepth* depth, double lowest) {
+void Runner::begin(const OperationCut& cut, Standing& standing, double safe_z, PathDepth* depth, double lowest) {
   cut_.emplace(cut);
   standing_ = &standing;
   depth_ = depth;
@@ -224,7 +224,7 @@ void Runner::look_ahead() {
   look_due_ = false;
   const double passing_s = 60 / (cut_->operation.spindle_rpm * cut_->tool.flutes);
   const double way = motion_.stopping_mm() + motion_.speed_mm_per_s() * (passing_s + motion_.period_s());
-  const Motion::Ahead ahead = motion_.ahead(way);
+  const FeedMotion::Ahead ahead = motion_.ahead(way);
   const double since_passing = (motion_.tip() - last_stamp_).norm();
   follower_->look_ahead(t_s_, {ahead.place, ahead.direction, since_passing + way, motion_.braking_mm_per_s2()});
 }

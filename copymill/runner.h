@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "copymill/clear_height.h"
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
+#include "copymill/feed_motion.h"
 #include "copymill/load_follower.h"
-#include "copymill/motion.h"
 #include "copymill/part_check.h"
 #include "copymill/standing.h"
 #include "removal/cutter.h"
@@ -17,7 +17,7 @@
 namespace camber::copymill {
 
 /// An operation with its tool.
-struct Cut {
+struct OperationCut {
   const machine::CopyOperation& operation;
   const machine::Tool& tool;
   removal::CutterShape shape;
@@ -35,7 +35,7 @@ class Runner {
 
   /// The tool of an operation stands at the safe height from here on.
   /// `depth`: judges the path; none for holes. `lowest_mm`: the tip goes no deeper.
-  void begin(const Cut& cut, Standing& standing, double safe_z_mm, PathDepth* depth, double lowest_mm);
+  void begin(const OperationCut& cut, Standing& standing, double safe_z_mm, PathDepth* depth, double lowest_mm);
   /// Writes what was cut to the stock.
   void end();
 
@@ -90,12 +90,12 @@ class Runner {
   const machine::Job& job_;
   const CopyOptions& options_;
   removal::Stock& stock_;
-  Motion motion_;
+  FeedMotion motion_;
   const nc::Dialect& dialect_;
   std::unique_ptr<nc::ProgramWriter> writer_;
   PieceOptions piece_options_;
   ClearHeight clear_height_;
-  std::optional<Cut> cut_;
+  std::optional<OperationCut> cut_;
   Standing* standing_ = nullptr;
   PathDepth* depth_ = nullptr;
   OperationSummary summary_;

@@ -5,7 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "copymill/underside.h"
+#include "copymill/clear_height.h"
 
 namespace camber::copymill {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "base/geometry.h"
 #include "copymill/grid.h"
-#include "copymill/pass.h"
+#include "copymill/path_piece.h"
 #include "removal/cutter.h"
 #include "removal/stock.h"
 

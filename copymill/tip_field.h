@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "base/geometry.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "removal/cutter.h"
 #include "repath/drop_cutter.h"
 

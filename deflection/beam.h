@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/tool.h"
 
 namespace camber::deflection {
 

@@ -8,7 +8,7 @@ namespace camber::deflection {
 
 /// Integrals over the envelope in the cut, of height dz and angle dphi: of 1, of cos 2 phi and sin 2 phi, and of the
 /// sine of the profile's normal angle. phi counter-clockwise from x in the tool's frame (tool_frame.h). With them the
-/// mean directional matrix of any engagement is known (dynamics/cut.h).
+/// mean directional matrix of any engagement is known (dynamics/vibrating_cut.h).
 struct ChipArc {
   float area_mm_rad = 0;  ///< area of the arc: for a single one its depth times its angle
   float cosine_mm_rad = 0, sine_mm_rad = 0;

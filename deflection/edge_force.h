@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "machine/force_law.h"
-#include "machine/job.h"
+#include "machine/material.h"
 
 namespace camber::deflection {
 

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "machine/job.h"
+#include "machine/material.h"
+#include "machine/tool.h"
 #include "removal/cutter.h"
 
 namespace camber::deflection {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/tool.h"
 
 namespace camber::deflection {
 

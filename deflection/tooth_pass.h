@@ -8,7 +8,7 @@
 #include "deflection/part_compliance.h"
 #include "deflection/teeth.h"
 #include "deflection/tool_frame.h"
-#include "machine/job.h"
+#include "machine/material.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
 #include "removal/engagement.h"

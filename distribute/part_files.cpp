@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/bytes.h"
-#include "base/confined_files.h"
+#include "base/folders.h"
 #include "base/output_file.h"
 #include "compensate/header.h"
 

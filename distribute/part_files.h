@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::distribute {
 

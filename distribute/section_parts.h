@@ -10,7 +10,7 @@
 
 #include "base/bytes.h"
 #include "removal/form_error.h"
-#include "removal/stock_part.h"
+#include "removal/stock.h"
 #include "simulate/cut.h"
 
 namespace camber::distribute {

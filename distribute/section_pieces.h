@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "machine/job.h"
-#include "removal/stock_part.h"
+#include "machine/job_file.h"
+#include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/path_stretch.h"
 

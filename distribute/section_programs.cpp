@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "removal/cutter.h"
-#include "removal/nominal_path.h"
+#include "removal/tool_path.h"
 
 namespace camber::distribute {
 

@@ -10,7 +10,7 @@
 #include "base/diagnostics.h"
 #include "distribute/part_files.h"
 #include "distribute/sections.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::distribute {
 

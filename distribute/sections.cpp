@@ -8,8 +8,8 @@
 #include "base/stage.h"
 #include "distribute/section_stock.h"
 #include "removal/engagement.h"
-#include "removal/joined_parts.h"
 #include "removal/known_run.h"
+#include "removal/stock.h"
 #include "simulate/contour.h"
 
 namespace camber::distribute {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "dynamics/cut.h"
+#include "dynamics/vibrating_cut.h"
 
 namespace camber::dynamics {
 

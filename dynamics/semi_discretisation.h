@@ -13,7 +13,7 @@
 #include <span>
 #include <string_view>
 
-#include "dynamics/cut.h"
+#include "dynamics/vibrating_cut.h"
 #include "dynamics/zero_order.h"
 
 namespace camber::dynamics {

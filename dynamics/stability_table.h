@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "dynamics/cut.h"
+#include "dynamics/vibrating_cut.h"
 #include "dynamics/zero_order.h"
 
 namespace camber::dynamics {
@@ -11,7 +11,7 @@ namespace camber::dynamics {
 /// An engagement of a single arc.
 struct ArcCut {
   double arc_rad = 0;     ///< angle
-  double centre_rad = 0;  ///< centre of the arc, as angles of dynamics/cut.h
+  double centre_rad = 0;  ///< centre of the arc, as angles of dynamics/vibrating_cut.h
   double kt_MPa = 0, kr_MPa = 0;
 };
 

@@ -2,9 +2,10 @@
 // Lobes of a job's tool at a radial depth.
 #include <vector>
 
-#include "dynamics/cut.h"
 #include "dynamics/semi_discretisation.h"
-#include "machine/job.h"
+#include "dynamics/vibrating_cut.h"
+#include "machine/material.h"
+#include "machine/tool.h"
 
 namespace camber::dynamics {
 

@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "dynamics/cut.h"
+#include "dynamics/vibrating_cut.h"
 
 namespace camber::dynamics {
 

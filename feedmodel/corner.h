@@ -1,9 +1,13 @@
 #pragma once
-// Corner laws: the speed at which a control passes from one segment to the next, and the rounding between them.
+// Corner laws: the speed at which a control passes from one segment to the next, the rounding between them, and short
+// lines that are driven as one.
+#include <cstddef>
 #include <optional>
+#include <span>
 
 #include "base/geometry.h"
 #include "machine/machine.h"
+#include "nc/move.h"
 
 namespace camber::feedmodel {
 
@@ -39,5 +43,18 @@ struct BlendOptions {
 /// sqrt(share a R), the goal at most. Nothing for directions that agree or are opposite.
 /// Source: LinuxCNC's G64 P corners as its traces show them (docs/feed-model.md).
 std::optional<Blend> blend_corner(const Vec3& from, const Vec3& to, const BlendOptions& options);
+
+/// A run of merged lines never holds more than this (LinuxCNC's figure).
+inline constexpr std::size_t kMaxMergedLines = 100;
+
+/// Tolerance within which lines are merged in this modal state: G64's Q, else its P where the control
+/// merges by it (ControlKind::g64_p_merges), else the control's own. 0: no merging.
+double merge_tolerance_mm(const nc::ModalState& state, const machine::Control& control);
+
+/// Returns the index after the last move of the run of lines that begins at `first` and is driven as one line: every
+/// corner that is passed over lies within `tolerance_mm` of the straight line from the run's start to its end. Only
+/// straight feed moves of one state and one feed are merged. Returns first + 1 where nothing merges. Source: LinuxCNC
+/// user manual, G64 P- Q- ("naive cam detector").
+std::size_t merged_run_end(std::span<const nc::Move> moves, std::size_t first, double tolerance_mm);
 
 }  // namespace camber::feedmodel

@@ -1,5 +1,5 @@
 #pragma once
-// Cycle time of a program on a machine: cutting, positioning, spindle, tool changes, codes, by tool.
+// Cycle time of a program on a machine: cutting, positioning, spindle, tool changes, codes, by tool; of each move.
 #include <cstdint>
 #include <iterator>
 #include <string_view>
@@ -9,6 +9,17 @@
 #include "nc/move.h"
 
 namespace camber::feedmodel {
+
+struct MotionTimes {
+  std::vector<double> move_s;        ///< one per move; merged lines count at the last of them
+  std::vector<float> acceleration;   ///< along the path of each cutting move's last segment, mm/s^2; 0: none
+  std::size_t speed_changes = 0;     ///< along the path and of positionings
+  std::size_t below_full_rapid = 0;  ///< positionings
+  std::size_t unplaced_moves = 0;    ///< see CycleTime
+};
+
+/// The times of plan_motion, move by move: their sum is the time that predict_feed takes.
+MotionTimes motion_times(const nc::Interpretation& program, const machine::Machine& machine);
 
 /// Time by kind of operation. Of simultaneous actions, the motion keeps its whole time and the others count the time by
 /// which they are longer. Source: Takata 1999, eqs. 2.1-2.2.

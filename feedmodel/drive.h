@@ -1,14 +1,109 @@
 #pragma once
 // Drive of one axis, linear or rotary: filter, exponential lags, dead time, position loop and backlash in series.
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
-#include "feedmodel/axis_filter.h"
-#include "feedmodel/backlash.h"
-#include "feedmodel/dead_time.h"
-#include "feedmodel/position_loop.h"
+#include "base/geometry.h"
 #include "machine/machine.h"
 
 namespace camber::feedmodel {
+
+/// Mean of the last `window` commands of one axis (a step of speed becomes a linear ramp of window x period).
+/// Source: KAKEN report, eqs. 4-5 (a ramp of 64 ms). window 0 or 1: nothing is changed.
+class AxisFilter {
+ public:
+  AxisFilter(std::size_t window, double start_mm) : ring_(window, start_mm), mean_mm_(start_mm) {}
+
+  double operator()(double command_mm) {
+    if (ring_.size() < 2) return command_mm;
+    mean_mm_ += (command_mm - ring_[at_]) / static_cast<double>(ring_.size());
+    ring_[at_] = command_mm;
+    if (++at_ == ring_.size()) {
+      at_ = 0;
+      double sum = 0;  // summed anew once a turn, so that rounding does not gather
+      for (double v : ring_) sum += v;
+      mean_mm_ = sum / static_cast<double>(ring_.size());
+    }
+    return mean_mm_;
+  }
+
+ private:
+  std::vector<double> ring_;
+  std::size_t at_ = 0;
+  double mean_mm_;
+};
+
+/// Commands `periods` periods ago, which need not be whole: between two of them the command runs straight.
+class DeadTime {
+ public:
+  DeadTime(double periods, double start)
+      : whole_(static_cast<std::size_t>(periods)),
+        fraction_(periods - std::floor(periods)),
+        ring_(periods > 0 ? whole_ + 2 : 0, start) {}
+
+  double operator()(double command) {
+    if (ring_.empty()) return command;
+    ring_[at_] = command;
+    const std::size_t n = ring_.size(), later = (at_ + n - whole_) % n, earlier = (later + n - 1) % n;
+    at_ = (at_ + 1) % n;
+    return (1 - fraction_) * ring_[later] + fraction_ * ring_[earlier];
+  }
+
+ private:
+  std::size_t whole_;
+  double fraction_;
+  std::vector<double> ring_;
+  std::size_t at_ = 0;
+};
+
+struct PositionLoopOptions {
+  double gain_per_s = 0;                   ///< Kp; infinite: the axis is where it is commanded
+  double velocity_lag_s = 0;               ///< Tv, time constant of the velocity loop; 0: none
+  double feed_forward_percent = 0;         ///< Kf
+  double acceleration_feed_forward_s = 0;  ///< Ka
+  double period_s = 0.001;
+};
+
+/// Tv x'' + x' = Kp (c - x) + Kf/100 c' + Ka c''
+///
+/// solved exactly for a command c that runs straight between two periods (its acceleration is a step of speed at each
+/// of them). At a constant speed v the axis is
+/// behind by v (1 - Kf/100) / Kp.
+/// Source: Yan & Shirase 1997; Takata 1999 (Kp, Kf; docs/feed-model.md); Tv as the traces of real drives show it.
+class PositionLoop {
+ public:
+  PositionLoop(const PositionLoopOptions& options, double start_mm);
+
+  /// Advances by one period in which the command goes from the last one to `command_mm`; returns the position.
+  double operator()(double command_mm);
+  double position_mm() const { return position_mm_; }
+  double velocity_mm_per_s() const { return velocity_mm_per_s_; }
+
+ private:
+  PositionLoopOptions options_;
+  double command_mm_, position_mm_;
+  double command_speed_mm_per_s_ = 0;
+  double velocity_mm_per_s_ = 0;
+  // Deviation from the steady following, advanced by one period: [z z'] <- [[a b] [c d]] [z z'].
+  double a_ = 0, b_ = 0, c_ = 0, d_ = 0;
+};
+
+/// The load stays until the motor has taken up half the play on either side (play operator): at a reversal `width` of
+/// the motion is lost. Begins in the middle. width 0: nothing is changed.
+class Backlash {
+ public:
+  Backlash(double width, double start) : half_(width / 2), load_(start) {}
+
+  double operator()(double motor) {
+    if (half_ <= 0) return motor;
+    return load_ = std::clamp(load_, motor - half_, motor + half_);
+  }
+
+ private:
+  double half_, load_;
+};
 
 /// Parameters that machine::Axis and machine::RotaryAxis share.
 struct DriveOptions {

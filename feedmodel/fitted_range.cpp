@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "base/units.h"
+#include "feedmodel/cycle_time.h"
 #include "feedmodel/limits.h"
 #include "feedmodel/modes.h"
-#include "feedmodel/motion_times.h"
 
 namespace camber::feedmodel {
 namespace {

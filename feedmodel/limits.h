@@ -1,6 +1,11 @@
 #pragma once
-// Limits of a block by its axes: maximum speed and acceleration along a direction, in a plane, on an arc.
+// Limits of a block by its axes: maximum speed and acceleration along a direction, in a plane, on an arc; those of a
+// path by its joints, and its corners.
+#include <functional>
+
 #include "base/geometry.h"
+#include "feedmodel/segment.h"
+#include "kinematics/joint_map.h"
 #include "machine/machine.h"
 
 namespace camber::feedmodel {
@@ -34,5 +39,46 @@ double arc_servo_speed(double radius_mm, double radius_error_mm, double gain_per
 
 /// Radius of curvature of a helix that rises `rise_per_rad_mm` while it turns: r (1 + (b/r)^2).
 double helix_curvature_radius(double radius_mm, double rise_per_rad_mm);
+
+/// A value of each axis: x, y, z (mm) and a, b, c (rad).
+struct AxisValues {
+  Vec3 linear = Vec3::Zero(), rotary = Vec3::Zero();
+};
+
+struct JointLimits {
+  AxisValues speed, acceleration;
+};
+
+JointLimits feed_limits(const machine::Machine& machine);
+JointLimits rapid_limits(const machine::Machine& machine);
+
+/// min_i limit_i / |rate_i|; infinite where no axis with a limit moves. `rate`: of the joints, per unit of path.
+double limit_along_joints(const AxisValues& rate, const AxisValues& limits);
+
+/// dq/ds at the length s, by central difference.
+AxisValues joint_rates(const Segment& segment, double s, const kinematics::JointMap& map);
+
+/// Hands the segment out in pieces, each with the limits of the joints in it:
+///     |q_i'| v <= V_i,        |q_i''| v^2 <= kTurningFraction A_i,        |q_i'| a <= A_i - |q_i''| v^2,
+/// v the limit of the piece, the segment's own included. A piece turns by at most a degree. Requires segment.turn.
+void hand_out_within_limits(const Segment& segment, const kinematics::JointMap& map, const JointLimits& limits,
+                            const std::function<void(const Segment&)>& sink);
+
+struct CornerRoom {
+  double tolerance_mm = 0;  ///< largest distance between the rounded path and the corner in X Y Z; infinite: none
+  double room = 0;          ///< most that may be cut off each side
+};
+
+/// Length that a rounding takes off each side. A parabola in X Y Z and in the angles alike that touches both sides d
+/// away from the corner passes it at d |u2 - u1| / 4, u1 and u2 the directions in X Y Z. Where they agree only the room
+/// counts.
+double corner_trim(const Segment& from, const Segment& to, const CornerRoom& room);
+
+/// That parabola: begins at from_end_s on `from`, ends `trim` after the start of `to`. Its limits are those of `from`;
+/// at a constant speed along it every program coordinate has a constant acceleration.
+Segment rounded_corner(const Segment& from, double from_end_s, const Segment& to, double trim);
+
+/// Speed at which no joint's speed steps by more than `permitted`: min_i permitted_i / |q2_i' - q1_i'|.
+double joint_step_speed(const AxisValues& from, const AxisValues& to, const AxisValues& permitted);
 
 }  // namespace camber::feedmodel

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "feedmodel/turn.h"
+#include "feedmodel/segment.h"
 #include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"
 

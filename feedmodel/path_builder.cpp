@@ -10,14 +10,11 @@
 #include "feedmodel/axis_places.h"
 #include "feedmodel/corner.h"
 #include "feedmodel/limits.h"
-#include "feedmodel/merge.h"
 #include "feedmodel/modes.h"
 #include "feedmodel/move_turns.h"
 #include "feedmodel/overlap.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/rests.h"
-#include "feedmodel/spindle_start.h"
-#include "feedmodel/turning_corner.h"
 #include "feedmodel/yan_shirase.h"
 
 namespace camber::feedmodel {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "feedmodel/profile.h"
+#include "feedmodel/segment_motion.h"
 
 namespace camber::feedmodel {
 namespace {

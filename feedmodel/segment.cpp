@@ -1,9 +1,15 @@
 #include "feedmodel/segment.h"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace camber::feedmodel {
+
+ProgramPose pose_at(const Segment& segment, double s) {
+  const Turn& turn = *segment.turn;
+  return {segment.point_at(s) + turn.bend_mm * (s * s), turn.start_rad + turn.rate * s + turn.bend * (s * s)};
+}
 
 double Segment::in_plane() const {
   return radius_growth == 0 ? radius_mm * turn_rad_per_mm : std::sqrt(1 - rise.squaredNorm());

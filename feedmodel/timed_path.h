@@ -1,17 +1,49 @@
 #pragma once
 // The path in time: commanded and actual positions of the axes at every period of the control.
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
 
 #include "base/geometry.h"
 #include "base/tool_pose.h"
-#include "feedmodel/pose_contour.h"
 #include "machine/machine.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {
+
+/// Follows the poses in time. The pose on the commanded path that a sample is compared with is the nearest one, not
+/// before that of the last sample; nearest by tip and axis together, where 1 rad of the axis counts as kAxisArmMm: a
+/// tip that stands still has no other place.
+class PoseContour {
+ public:
+  static constexpr double kAxisArmMm = 10;
+
+  struct Error {
+    double tip_mm = 0, axis_rad = 0;
+  };
+  Error operator()(const ToolPose& command, const ToolPose& actual);
+
+ private:
+  std::deque<ToolPose> commands_;  ///< commands from the nearest one of the last call on
+};
+
+/// Maximum and root mean square over samples.
+struct PoseContourFigures {
+  double tip_max_mm = 0, tip_rms_mm = 0, axis_max_rad = 0, axis_rms_rad = 0;
+};
+
+class PoseContourSum {
+ public:
+  void add(const PoseContour::Error& error);
+  PoseContourFigures figures() const;
+
+ private:
+  PoseContourFigures sum_;  ///< sums of squares in place of the means
+  std::size_t count_ = 0;
+};
 
 struct TimedSample {
   double t_s = 0;

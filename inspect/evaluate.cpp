@@ -1,14 +1,15 @@
 #include "inspect/evaluate.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 
 #include "inspect/evaluation.h"
+#include "machine/material_presets.h"
 
 namespace camber::inspect {
 
@@ -159,6 +160,54 @@ std::vector<FeatureResult> evaluate(const std::vector<Feature>& features,
   set_positions(all);
   for (std::size_t i = 0; i < features.size(); ++i) set_given(out[i], features[i], error);
   return out;
+}
+
+namespace {
+
+std::string cell(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value + 0.0, decimals) : std::string();
+}
+
+/// A name with a comma or a quote stands in quotes.
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",\"\n") == std::string::npos) return name;
+  std::string out = "\"";
+  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+}  // namespace
+
+std::string features_csv(const std::vector<FeatureResult>& results) {
+  std::string out =
+      "feature,kind,nominal_mm,predicted_mm,std_mm,measured_mm,difference_um,form_um,taper_um,lower_mm,upper_mm,"
+      "within\n";
+  for (const FeatureResult& r : results) {
+    const auto within = r.within();
+    out +=
+        fmt::format("{},{},{:.6f},{},{},{},{},{},{},{},{},{}\n", quoted(r.feature),
+                    machine::kFeatureKindWords[static_cast<std::size_t>(r.kind)], r.nominal_mm, cell(r.predicted_mm, 6),
+                    cell(r.std_mm, 6), cell(r.measured_mm, 6), cell(r.difference_um(), 3), cell(r.form_um, 3),
+                    cell(r.taper_um, 3), cell(r.lower_mm, 6), cell(r.upper_mm, 6), within ? (*within ? "1" : "0") : "");
+  }
+  return out;
+}
+
+namespace {
+
+constexpr double kOtherSource = 0.25, kSmallTool = 1.5, kSmallTool_mm = 4;
+constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kGain = 0.15, kDiameter_mm = 0.005;
+
+}  // namespace
+
+machine::ModelError model_error_of(const machine::Job& job) {
+  if (job.model_error) return *job.model_error;
+  const machine::MaterialPreset* preset = machine::find_preset(job.material.preset);
+  const double force = preset ? preset->scatter_percent / 100 : kOtherSource;
+  const auto any = [&](auto test) { return std::ranges::any_of(job.tools, test); };
+  const double chips = any([](const auto& t) { return t.second.diameter_mm < kSmallTool_mm; }) ? kSmallTool : 0;
+  const double stiffness = any([](const auto& t) { return !t.second.typical.empty(); }) ? kTypicalRoot : kGivenRoot;
+  return {.deflection = std::hypot(force, chips, stiffness), .contour = kGain, .size_mm = kDiameter_mm};
 }
 
 }  // namespace camber::inspect

@@ -1,11 +1,12 @@
 #pragma once
-// Features of a part on the predicted surface, measured as the instrument would.
+// Features of a part on the predicted surface, measured as the instrument would; how sure the model is of them.
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "machine/features.h"
+#include "machine/job_file.h"
 #include "removal/form_error.h"
 
 namespace camber::inspect {
@@ -55,5 +56,16 @@ std::vector<FeatureResult> evaluate(const std::vector<machine::Feature>& feature
 /// Columns feature,kind,nominal_mm,predicted_mm,std_mm,measured_mm,difference_um,form_um,taper_um,lower_mm,upper_mm,
 /// within; what is not known is empty, within is 1 or 0.
 std::string features_csv(const std::vector<FeatureResult>& results);
+
+/// The job's [model_error] where it has one; else relative standard errors by where its numbers come from:
+///
+///   deflection  forces: the preset's scatter, or 25 % for coefficients from elsewhere, and 150 % for the thin chips of
+///               small tools, where size effect, edge wear and rubbing make up to three times the force of a law that
+///               was fitted on thick chips; stiffness: 40 % where the root or the flutes are typical values, else 15 %
+///   contour     15 %: gains of position loops as they are set
+///   size        5 um: what a tool's diameter is off
+///
+/// Source of the size effect: Altintas, Manufacturing Automation, 2nd ed., ch. 2; of the 150 %: docs/measured-parts.md.
+machine::ModelError model_error_of(const machine::Job& job);
 
 }  // namespace camber::inspect

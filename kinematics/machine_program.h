@@ -8,7 +8,7 @@
 #include "base/diagnostics.h"
 #include "base/tool_pose.h"
 #include "kinematics/part_path.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::machine {
 

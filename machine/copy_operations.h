@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 namespace camber::machine {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/geometry.h"
-#include "machine/job.h"
+#include "machine/tool.h"
 
 namespace camber::machine {
 

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "machine/job.h"
+#include "base/diagnostics.h"
+#include "machine/material.h"
+#include "machine/tool.h"
 
 namespace camber::machine {
 

@@ -2,7 +2,7 @@
 // The keys of job.toml, for its reader and its writer.
 #include <array>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "machine/number_key.h"
 
 namespace camber::machine {

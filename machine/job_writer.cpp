@@ -4,9 +4,8 @@
 
 #include "machine/assumptions.h"
 #include "machine/job_keys.h"
+#include "machine/job_tables.h"
 #include "machine/material_reader.h"
-#include "machine/mode_reader.h"
-#include "machine/tool_reader.h"
 
 namespace camber::machine {
 namespace {
@@ -76,7 +75,7 @@ std::string operations_text(const std::string& name, const Operations& operation
   return operations.comments.empty() ? out : out + toml_line("comments", operations.comments);
 }
 
-std::string part_text(const Part& part) {
+std::string part_text(const PartDescription& part) {
   if (part.mesh.empty() && part.program.empty() && !part.operations && !part.judged) return {};
   std::string out = "\n[part]\n";
   if (!part.mesh.empty()) out += toml_line("mesh", part.mesh);

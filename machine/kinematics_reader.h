@@ -1,5 +1,5 @@
 #pragma once
-// [kinematics] and the tables of the rotary axes. Internal to machine/.
+// [kinematics], the tables of the rotary axes and [[body]]. Internal to machine/.
 #include <string>
 
 #include "machine/machine.h"
@@ -17,5 +17,11 @@ void check_kinematics(TomlTable& top, const Machine& machine);
 /// Both as machine.toml text, each beginning with an empty line; empty where there is nothing to write.
 std::string kinematics_text(const Kinematics& kinematics);
 std::string rotary_axis_text(std::string_view name, const RotaryAxis& axis);
+
+/// After [kinematics].
+void read_bodies(TomlTable& top, Machine& machine);
+
+/// The body as machine.toml text that begins with an empty line.
+std::string body_text(const Body& body);
 
 }  // namespace camber::machine

@@ -1,21 +1,29 @@
 #pragma once
 // Machine and control, read from machine.toml. A missing limit is no limit (infinity).
 #include <array>
-#include <limits>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/body.h"
+#include "base/geometry.h"
 #include "machine/control_kind.h"
 #include "machine/cycle.h"
 #include "machine/kinematics.h"
+#include "machine/number_range.h"
 
 namespace camber::machine {
 
-inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+/// A box or a mesh as it stands with all axes at 0, in the machine frame.
+struct Body {
+  std::string name;
+  std::string on;        ///< what carries it: "part", an axis, "bed" or "spindle"
+  std::size_t axes = 0;  ///< between the part and it; without [kinematics] x, y and z are between part and spindle
+  std::optional<std::array<Vec3, 2>> box_mm{};  ///< least and greatest corner
+  std::string mesh{};                           ///< STL file, absolute; empty: a box
+};
 
 enum class CornerLaw {
   speed_difference,  ///< per-axis permitted speed step (Fanuc 1783): F_c = F / max(dV_axis / V_permitted)

@@ -2,11 +2,65 @@
 // The keys of machine.toml, for its reader and its writer.
 #include <array>
 
-#include "machine/cycle_keys.h"
+#include "machine/cycle.h"
+#include "machine/kinematics.h"
 #include "machine/machine.h"
 #include "machine/number_key.h"
 
 namespace camber::machine {
+
+inline constexpr NumberRange kDeadTimeMs{.min = 0, .max = 1000};  // of an axis
+inline constexpr std::array<std::string_view, 2> kRapidPathWords{"dogleg", "linear"};
+inline constexpr std::array<std::string_view, 3> kAccelerationLawWords{"linear", "exponential", "bell"};
+inline constexpr std::array<std::string_view, 2> kCodeOrderWords{"sequential", "simultaneous"};
+
+inline constexpr NumberRange kOverridePercent{.min = 0, .max = 1000, .above_min = true};
+inline constexpr NumberRange kOverlapPercent{.min = 0, .max = 100};
+inline constexpr FileUnit kDegreesPerMinute{[](double v) { return rad_from_deg(v) / 60.0; },
+                                            [](double v) { return deg_from_rad(v) * 60.0; }};
+
+inline constexpr std::array kCycleKeys{
+    NumberKey<Cycle>{"time_constant_1_ms", &Cycle::time_constant_1_s, kNotNegative, kMilliseconds},
+    NumberKey<Cycle>{"time_constant_2_ms", &Cycle::time_constant_2_s, kNotNegative, kMilliseconds},
+    NumberKey<Cycle>{"bell_time_ms", &Cycle::bell_time_s, kNotNegative, kMilliseconds},
+    NumberKey<Cycle>{"rapid_override_percent", &Cycle::rapid_override_percent, kOverridePercent},
+    NumberKey<Cycle>{"feed_override_percent", &Cycle::feed_override_percent, kOverridePercent},
+    NumberKey<Cycle>{"rapid_overlap_percent", &Cycle::rapid_overlap_percent, kOverlapPercent},
+    NumberKey<Cycle>{"linear_acceleration_mm_per_s2", &Cycle::linear_acceleration_mm_per_s2, kPositiveOrInf},
+    NumberKey<Cycle>{"arc_acceleration_mm_per_s2", &Cycle::arc_acceleration_mm_per_s2, kPositiveOrInf},
+    NumberKey<Cycle>{"arc_tolerance_mm", &Cycle::arc_tolerance_mm, kPositiveOrInf},
+    NumberKey<Cycle>{"arc_loop_factor", &Cycle::arc_loop_factor, kPositive},
+    NumberKey<Cycle>{"jerk_filter_ms", &Cycle::jerk_filter_s, kNotNegative, kMilliseconds},
+    NumberKey<Cycle>{"m_code_s", &Cycle::m_code_s, kNotNegative},
+    NumberKey<Cycle>{"s_code_s", &Cycle::s_code_s, kNotNegative},
+    NumberKey<Cycle>{"t_code_s", &Cycle::t_code_s, kNotNegative},
+    NumberKey<Cycle>{"histogram_step_mm", &Cycle::histogram_step_mm, kNotNegative},
+    NumberKey<Cycle>{"pallet_change_s", &Cycle::pallet_change_s, kNotNegative},
+    NumberKey<Cycle>{"creep_feed_mm_per_min", &Cycle::creep_feed_mm_per_s, kPositiveOrInf, kPerMinute},
+};
+
+inline constexpr std::array kToolChangeKeys{
+    NumberKey<ToolChange>{"chip_to_chip_s", &ToolChange::chip_to_chip_s, kNotNegative},
+    NumberKey<ToolChange>{"tool_to_tool_s", &ToolChange::tool_to_tool_s, kNotNegative},
+    NumberKey<ToolChange>{"x_mm", &ToolChange::x_mm, kAnyNumberOrInf},
+    NumberKey<ToolChange>{"y_mm", &ToolChange::y_mm, kAnyNumberOrInf},
+    NumberKey<ToolChange>{"z_mm", &ToolChange::z_mm, kAnyNumberOrInf},
+};
+
+inline constexpr std::array<std::string_view, 3> kReferencePointNames{"2", "3", "4"};
+
+inline constexpr std::array kReferencePointKeys{
+    NumberKey<ReferencePoint>{"x_mm", &ReferencePoint::x_mm, kAnyNumberOrInf},
+    NumberKey<ReferencePoint>{"y_mm", &ReferencePoint::y_mm, kAnyNumberOrInf},
+    NumberKey<ReferencePoint>{"z_mm", &ReferencePoint::z_mm, kAnyNumberOrInf},
+};
+
+inline constexpr std::array kIndexKeys{
+    NumberKey<IndexTable>{"max_velocity_deg_per_min", &IndexTable::max_velocity_rad_per_s, kPositiveOrInf,
+                          kDegreesPerMinute},
+    NumberKey<IndexTable>{"acceleration_deg_per_s2", &IndexTable::acceleration_rad_per_s2, kPositiveOrInf, kDegrees},
+    NumberKey<IndexTable>{"clamp_s", &IndexTable::clamp_s, kNotNegative},
+};
 
 inline constexpr std::array<std::string_view, 5> kCornerLawWords{"speed_difference", "angle", "blend", "exact_stop",
                                                                  "radius"};
@@ -101,6 +155,34 @@ inline constexpr std::array kSpindleKeys{
     NumberKey<Spindle>{"constant_power_rpm", &Spindle::constant_power_rpm, kPositiveOrInf},
     NumberKey<Spindle>{"start_time_s", &Spindle::start_time_s, kNotNegative},
     NumberKey<Spindle>{"orient_s", &Spindle::orient_s, kNotNegative},
+};
+
+inline constexpr std::array<std::string_view, 3> kRotaryAxisNames{"a", "b", "c"};
+inline constexpr std::array<std::string_view, 2> kPositiveTurnWords{"tool", "table"};
+
+inline constexpr NumberRange kFeedForwardPercent{.min = 0, .max = 100};
+inline constexpr NumberRange kMCode{.min = 1, .max = 999, .whole = true};
+
+inline constexpr std::array kRotaryAxisKeys{
+    NumberKey<RotaryAxis>{"max_velocity_deg_per_min", &RotaryAxis::max_velocity_rad_per_s, kPositiveOrInf,
+                          kDegreesPerMinute},
+    NumberKey<RotaryAxis>{"max_feed_deg_per_min", &RotaryAxis::max_feed_rad_per_s, kPositiveOrInf, kDegreesPerMinute},
+    NumberKey<RotaryAxis>{"rapid_deg_per_min", &RotaryAxis::rapid_rad_per_s, kPositiveOrInf, kDegreesPerMinute},
+    NumberKey<RotaryAxis>{"acceleration_deg_per_s2", &RotaryAxis::acceleration_rad_per_s2, kPositiveOrInf, kDegrees},
+    NumberKey<RotaryAxis>{"jerk_deg_per_s3", &RotaryAxis::jerk_rad_per_s3, kPositiveOrInf, kDegrees},
+    NumberKey<RotaryAxis>{"filter_ms", &RotaryAxis::filter_s, kNotNegative, kMilliseconds},
+    NumberKey<RotaryAxis>{"exponential_1_ms", &RotaryAxis::exponential_1_s, kNotNegative, kMilliseconds},
+    NumberKey<RotaryAxis>{"exponential_2_ms", &RotaryAxis::exponential_2_s, kNotNegative, kMilliseconds},
+    NumberKey<RotaryAxis>{"position_gain_per_s", &RotaryAxis::position_gain_per_s, kPositiveOrInf},
+    NumberKey<RotaryAxis>{"velocity_lag_ms", &RotaryAxis::velocity_lag_s, kNotNegative, kMilliseconds},
+    NumberKey<RotaryAxis>{"feed_forward_percent", &RotaryAxis::feed_forward_percent, kFeedForwardPercent},
+    NumberKey<RotaryAxis>{"acceleration_feed_forward_ms", &RotaryAxis::acceleration_feed_forward_s, kNotNegative,
+                          kMilliseconds},
+    NumberKey<RotaryAxis>{"dead_time_ms", &RotaryAxis::dead_time_s, kDeadTimeMs, kMilliseconds},
+    NumberKey<RotaryAxis>{"backlash_deg", &RotaryAxis::backlash_rad, kNotNegative, kDegrees},
+    NumberKey<RotaryAxis>{"speed_difference_deg_per_min", &RotaryAxis::speed_difference_rad_per_s, kPositiveOrInf,
+                          kDegreesPerMinute},
+    NumberKey<RotaryAxis>{"clamp_s", &RotaryAxis::clamp_s, kNotNegative},
 };
 
 }  // namespace camber::machine

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "machine/body_reader.h"
 #include "machine/kinematics_reader.h"
 #include "machine/machine_keys.h"
 #include "machine/machine_presets.h"

@@ -5,6 +5,8 @@
 
 namespace camber::machine {
 
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
 /// Which numbers a key takes, and how a message says so.
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();

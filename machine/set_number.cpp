@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "machine/kinematics_keys.h"
 #include "machine/machine_keys.h"
 
 namespace camber::machine {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/tool.h"
 
 namespace camber::machine {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include "base/confined_files.h"
+#include "base/folders.h"
 #include "base/units.h"
 #include "machine/job_keys.h"
 #include "machine/library_words.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "plan/holes.h"
-#include "plan/mesh_edges.h"
+#include "plan/find_holes.h"
+#include "plan/triangle_solid.h"
 
 namespace camber::plan {
 namespace {
@@ -27,7 +27,7 @@ struct Patch {
   int kind = kNoAxis;
   std::vector<std::uint32_t> triangles;
   double area_mm2 = 0;
-  Bounds bounds;
+  SolidBounds bounds;
   double at_mm = 0;                  ///< planes: mean coordinate
   bool smooth_all_round = true;      ///< no edge of it is sharp
   double largest_neighbour_mm2 = 0;  ///< of the triangles round it
@@ -38,7 +38,7 @@ struct Patch {
 
 class PatchFinder {
  public:
-  PatchFinder(const Solid& solid, const MeshEdges& edges) : solid_(solid), edges_(edges) {
+  PatchFinder(const TriangleSolid& solid, const MeshEdges& edges) : solid_(solid), edges_(edges) {
     for (std::size_t t = 0; t < solid.triangles.size(); ++t) {
       normals_.push_back(unit_normal(solid, t));
       kinds_.push_back(kind_of(normals_.back()));
@@ -106,7 +106,7 @@ class PatchFinder {
     if (patch.area_mm2 > 0) patch.at_mm = sum / patch.area_mm2;
   }
 
-  const Solid& solid_;
+  const TriangleSolid& solid_;
   const MeshEdges& edges_;
   std::vector<Vec3> normals_;
   std::vector<int> kinds_;
@@ -158,7 +158,7 @@ void add_planes(const std::vector<Patch>& patches, const FaceOptions& options,
 /// triangles side by side.
 class CornerFinder {
  public:
-  CornerFinder(const Solid& solid, const MeshEdges& edges, const std::vector<bool>& of_hole)
+  CornerFinder(const TriangleSolid& solid, const MeshEdges& edges, const std::vector<bool>& of_hole)
       : solid_(solid),
         edges_(edges),
         of_hole_(of_hole),
@@ -249,7 +249,7 @@ class CornerFinder {
     if (turn <= kSharp + kFlat && among_facets_.back()) chain_[chain_of(next)] = chain_of(t);
   }
 
-  const Solid& solid_;
+  const TriangleSolid& solid_;
   const MeshEdges& edges_;
   const std::vector<bool>& of_hole_;
   std::vector<double> widths_;        ///< of each triangle's facet
@@ -259,8 +259,8 @@ class CornerFinder {
   std::vector<InnerCorner> out_;
 };
 
-Solid plugged_of(const Solid& solid, const FoundHoles& holes) {
-  Solid out;
+TriangleSolid plugged_of(const TriangleSolid& solid, const FoundHoles& holes) {
+  TriangleSolid out;
   out.points = solid.points;
   out.points.insert(out.points.end(), holes.new_points.begin(), holes.new_points.end());
   for (std::size_t t = 0; t < solid.triangles.size(); ++t)
@@ -306,7 +306,7 @@ std::vector<AxisPlane> without_slivers(const std::vector<AxisPlane>& planes, dou
   return out;
 }
 
-Faces find_faces(const Solid& solid, const FaceOptions& options) {
+Faces find_faces(const TriangleSolid& solid, const FaceOptions& options) {
   Faces out;
   const MeshEdges edges(solid);
   const FoundHoles holes = find_holes(solid, edges, options);
@@ -320,7 +320,7 @@ Faces find_faces(const Solid& solid, const FaceOptions& options) {
   return out;
 }
 
-std::array<std::vector<AxisPlane>, 3> find_planes(const Solid& solid, const FaceOptions& options) {
+std::array<std::vector<AxisPlane>, 3> find_planes(const TriangleSolid& solid, const FaceOptions& options) {
   std::array<std::vector<AxisPlane>, 3> planes;
   add_planes(PatchFinder(solid, MeshEdges(solid)).find(), options, planes);
   return planes;

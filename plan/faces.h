@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "plan/solid.h"
+#include "plan/triangle_solid.h"
 
 namespace camber::plan {
 
@@ -41,7 +41,7 @@ struct Faces {
   std::vector<Hole> holes;                       ///< by x, then y, then top
   std::vector<InnerCorner> corners;
   double free_form_mm2 = 0;
-  Solid plugged;  ///< the solid with its holes filled
+  TriangleSolid plugged;  ///< the solid with its holes filled
 };
 
 /// A plane is a connected patch of triangles whose normals are within 0.1 degrees of an axis; patches within the
@@ -56,10 +56,10 @@ struct Faces {
 /// facets, whose corners are on it: r = w / (2 sin(turn / 2)) with the mean w of their widths, of which the wider
 /// counts at most as twice the narrower: beside a round corner stands a long wall. Facets of one round wall have one
 /// radius, the median.
-Faces find_faces(const Solid& solid, const FaceOptions& options);
+Faces find_faces(const TriangleSolid& solid, const FaceOptions& options);
 
 /// Only the planes, of a solid that is no part: faces of the blank.
-std::array<std::vector<AxisPlane>, 3> find_planes(const Solid& solid, const FaceOptions& options);
+std::array<std::vector<AxisPlane>, 3> find_planes(const TriangleSolid& solid, const FaceOptions& options);
 
 /// Joins planes within the tolerance; a face and a bound are a face.
 std::vector<AxisPlane> joined(std::vector<AxisPlane> planes, double tolerance_mm);

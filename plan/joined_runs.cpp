@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kTouch_mm = 1e-3;
 
-using Run = std::vector<Operation>;
+using Run = std::vector<PlanOperation>;
 
-bool is_by_levels(const Operation& o) { return o.pattern != Pattern::drilling && o.scallop_mm <= 0; }
+bool is_by_levels(const PlanOperation& o) { return o.pattern != Pattern::drilling && o.scallop_mm <= 0; }
 
-bool places_overlap(const Operation& a, const Operation& b) {
+bool places_overlap(const PlanOperation& a, const PlanOperation& b) {
   for (int axis = 0; axis < 2; ++axis)
     if (std::min(a.box_mm[1][axis], b.box_mm[1][axis]) - std::max(a.box_mm[0][axis], b.box_mm[0][axis]) < kTouch_mm)
       return false;
@@ -25,14 +25,14 @@ bool places_overlap(const Operation& a, const Operation& b) {
 }
 
 /// Side by side at a common height, or one on the other.
-bool touch(const Operation& a, const Operation& b) {
+bool touch(const PlanOperation& a, const PlanOperation& b) {
   return places_overlap(a, b) && std::min(a.to_mm, b.to_mm) > std::max(a.from_mm, b.from_mm) - kTouch_mm;
 }
 
 class Joiner {
  public:
   Joiner(const PlanInput& input, PlannedDivision& plan) : input_(input), plan_(plan) {
-    for (const Operation& o : plan.operations) runs_.push_back({o});
+    for (const PlanOperation& o : plan.operations) runs_.push_back({o});
   }
 
   void join() {
@@ -55,19 +55,19 @@ class Joiner {
   }
 
  private:
-  const Primitive& primitive(const Operation& o) const {
+  const VolumePrimitive& primitive(const PlanOperation& o) const {
     return plan_.primitives[plan_.order.steps[o.primitive - 1].primitive];
   }
 
   /// Whether an operation must come after another one that is planned before it.
-  static bool needs(const Operation& later, const Operation& earlier) {
+  static bool needs(const PlanOperation& later, const PlanOperation& earlier) {
     if (later.primitive == earlier.primitive) return true;
     const bool opens = earlier.kind != OperationKind::finish && earlier.from_mm > later.to_mm - kTouch_mm;
     return !is_by_levels(later) || !is_by_levels(earlier) || (opens && places_overlap(earlier, later));
   }
   static bool needs(const Run& later, const Run& earlier) {
-    return std::ranges::any_of(later, [&](const Operation& l) {
-      return std::ranges::any_of(earlier, [&](const Operation& e) { return needs(l, e); });
+    return std::ranges::any_of(later, [&](const PlanOperation& l) {
+      return std::ranges::any_of(earlier, [&](const PlanOperation& e) { return needs(l, e); });
     });
   }
   /// Run `of` before those from `first` to `end`.
@@ -87,12 +87,13 @@ class Joiner {
   std::optional<Conditions> together(const Run& a, const Run& b) const {
     Run all = a;
     all.insert(all.end(), b.begin(), b.end());
-    const Operation& first = all.front();
-    for (const Operation& o : all)
+    const PlanOperation& first = all.front();
+    for (const PlanOperation& o : all)
       if (o.feature == Feature::free_form || !not_joined_because(first, o).empty() || !o.conditions.within)
         return std::nullopt;
-    const bool meet = std::ranges::any_of(
-        a, [&](const Operation& x) { return std::ranges::any_of(b, [&](const Operation& y) { return touch(x, y); }); });
+    const bool meet = std::ranges::any_of(a, [&](const PlanOperation& x) {
+      return std::ranges::any_of(b, [&](const PlanOperation& y) { return touch(x, y); });
+    });
     if (!meet) return std::nullopt;
     std::string note;
     const auto c = conditions_for(input_, input_.tools.at(first.tool),
@@ -102,22 +103,22 @@ class Joiner {
     const auto cost = first.kind == OperationKind::finish ? &Joiner::wall_levels : &Joiner::cost_s;
     const double apart = (this->*cost)(a, a.front().conditions) + (this->*cost)(b, b.front().conditions);
     // A path of another pattern must be worth it.
-    const bool alike = std::ranges::all_of(all, [&](const Operation& o) { return o.pattern == first.pattern; });
+    const bool alike = std::ranges::all_of(all, [&](const PlanOperation& o) { return o.pattern == first.pattern; });
     return (this->*cost)(all, *c) <= apart + (alike ? kRounding : -kRounding) ? c : std::nullopt;
   }
   bool joins(std::size_t a, std::size_t b) const { return together(runs_[a], runs_[b]).has_value(); }
 
   static double depth_mm(const Run& run) { return highest_mm(run) - lowest_mm(run); }
-  static double highest_mm(const Run& run) { return std::ranges::max(run, {}, &Operation::to_mm).to_mm; }
-  static double lowest_mm(const Run& run) { return std::ranges::min(run, {}, &Operation::from_mm).from_mm; }
+  static double highest_mm(const Run& run) { return std::ranges::max(run, {}, &PlanOperation::to_mm).to_mm; }
+  static double lowest_mm(const Run& run) { return std::ranges::min(run, {}, &PlanOperation::from_mm).from_mm; }
 
-  double area_mm2(const Operation& o) const {
-    const Primitive& p = primitive(o);
+  double area_mm2(const PlanOperation& o) const {
+    const VolumePrimitive& p = primitive(o);
     return (p.max_mm.x() - p.min_mm.x()) * (p.max_mm.y() - p.min_mm.y());
   }
   /// Seen from above, of one on the other.
-  double common_mm2(const Operation& a, const Operation& b) const {
-    const Primitive &p = primitive(a), &q = primitive(b);
+  double common_mm2(const PlanOperation& a, const PlanOperation& b) const {
+    const VolumePrimitive &p = primitive(a), &q = primitive(b);
     double out = 1;
     for (int axis = 0; axis < 2; ++axis)
       out *= std::max(0.0, std::min(p.max_mm[axis], q.max_mm[axis]) - std::max(p.min_mm[axis], q.min_mm[axis]));
@@ -135,7 +136,7 @@ class Joiner {
     const double top = highest_mm(run), depth = depth_mm(run);
     const int n = levels(run, c);
     double area = 0;
-    for (const Operation& o : run) {
+    for (const PlanOperation& o : run) {
       bool even = false;
       for (int k = 1; k <= n; ++k) {
         const double z = top - depth * k / n;
@@ -144,7 +145,7 @@ class Joiner {
       }
       if (even) continue;
       double apart = area_mm2(o);
-      for (const Operation& below : run)
+      for (const PlanOperation& below : run)
         if (std::abs(below.to_mm - o.from_mm) < kTouch_mm) apart -= common_mm2(o, below);
       area += std::max(0.0, apart);
     }
@@ -156,10 +157,11 @@ class Joiner {
     const Conditions c = *together(runs_[a], runs_[b]);
     Run all = runs_[a];
     all.insert(all.end(), runs_[b].begin(), runs_[b].end());
-    std::ranges::stable_sort(all, {}, &Operation::primitive);
-    const bool loops = std::ranges::any_of(all, [](const Operation& o) { return o.pattern == Pattern::contour_line; });
+    std::ranges::stable_sort(all, {}, &PlanOperation::primitive);
+    const bool loops =
+        std::ranges::any_of(all, [](const PlanOperation& o) { return o.pattern == Pattern::contour_line; });
     const double rate = removal_rate_mm3_per_s(input_.tools.at(all.front().tool), c);
-    for (Operation& o : all) {
+    for (PlanOperation& o : all) {
       o.conditions = c;
       o.joined = &o != &all.front();
       if (loops) o.pattern = Pattern::contour_line;
@@ -181,7 +183,7 @@ std::size_t first_of_run(const PlannedDivision& plan, std::size_t operation) {
   return operation;
 }
 
-std::string not_joined_because(const Operation& before, const Operation& row) {
+std::string not_joined_because(const PlanOperation& before, const PlanOperation& row) {
   constexpr double kSame_mm = 1e-4;
   if (!is_by_levels(before) || !is_by_levels(row)) return "only milling level by level can be joined";
   if (row.kind != before.kind) return "it is of another kind than the row before";

@@ -1,6 +1,6 @@
 #pragma once
 // Operations that are cut in one run, as one region.
-#include "plan/operations.h"
+#include "plan/planned_operations.h"
 
 namespace camber::plan {
 
@@ -16,6 +16,6 @@ void join_operations(const PlanInput& input, PlannedDivision& plan);
 std::size_t first_of_run(const PlannedDivision& plan, std::size_t operation);
 
 /// For a row of the table: what keeps it from being in one run with the row before; empty: nothing.
-std::string not_joined_because(const Operation& before, const Operation& row);
+std::string not_joined_because(const PlanOperation& before, const PlanOperation& row);
 
 }  // namespace camber::plan

@@ -52,9 +52,9 @@ struct Order {
 };
 
 /// Keeps what is air already.
-class Workpiece {
+class MachinedSpace {
  public:
-  Workpiece(const RemovalVolume& removal, const std::vector<Primitive>& primitives);
+  MachinedSpace(const RemovalVolume& removal, const std::vector<VolumePrimitive>& primitives);
 
   /// A side is open where 98 % of it touches air; the top where all of it does.
   OpenFaces open_faces(std::size_t primitive) const;
@@ -79,14 +79,14 @@ class Workpiece {
   enum Owner : int { kAir = -1, kPart = -2, kFixture = -3, kMachined = -4 };  ///< or the number of a primitive
   int owner(const CellIndex& c) const { return owners_[removal_.grid.place(c)]; }
   bool is_air(const CellIndex& c) const;
-  double open_share(const Primitive& p, int axis, int step) const;
-  double part_area_mm2(const Primitive& p, int axis, int step) const;
+  double open_share(const VolumePrimitive& p, int axis, int step) const;
+  double part_area_mm2(const VolumePrimitive& p, int axis, int step) const;
   std::vector<std::array<int, 2>> columns_of(const Hole& hole) const;
   OpenFaces open_faces_of_hole(const Hole& hole, std::size_t primitive) const;
   std::string blocked_hole(const Hole& hole, std::size_t primitive) const;
 
   const RemovalVolume& removal_;
-  const std::vector<Primitive>& primitives_;
+  const std::vector<VolumePrimitive>& primitives_;
   std::vector<int> owners_;
   std::vector<bool> removed_;
 };
@@ -97,12 +97,12 @@ double sharp_corners_mm2(double radius_mm);
 /// By (1) greater height of the top, (2) greater volume, (3) more open faces, (4) less distance from the middle of the
 /// removal volume; (5) holes last whatever the others say. Of primitives that the tool reaches the first by these rules
 /// is taken, its open faces are noted, and those of the others are looked at again.
-Order put_in_order(const RemovalVolume& removal, const std::vector<Primitive>& primitives);
+Order put_in_order(const RemovalVolume& removal, const std::vector<VolumePrimitive>& primitives);
 
 /// From the open faces. Box: by the sides that are open besides the top: none, closed pocket; one, closed slot; two
 /// that meet, open pocket; two opposite ones, open slot; three, step; four, face. An open bottom (a window) does not
 /// count.
-Feature feature_of(const Primitive& primitive, const OpenFaces& open);
+Feature feature_of(const VolumePrimitive& primitive, const OpenFaces& open);
 
 /// How primitives compare, without their open faces' search: for the order and its tests.
 struct Rank {

@@ -7,8 +7,12 @@
 
 #include <Eigen/Geometry>
 
-#include "machine/job.h"
-#include "plan/cases.h"
+#include "machine/machine.h"
+#include "machine/material.h"
+#include "machine/simulation_settings.h"
+#include "machine/tool.h"
+#include "machine/workpiece.h"
+#include "plan/case_base.h"
 #include "plan/faces.h"
 
 namespace camber::plan {
@@ -35,7 +39,7 @@ struct PlanLimits {
 };
 
 /// How the part lies on the machine.
-struct Setup {
+struct PartSetup {
   std::string name{};
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< from the files' frame
 };
@@ -60,7 +64,7 @@ struct PlanInput {
   PlanLimits limits;
   machine::Simulation simulation;
   FaceOptions faces;
-  std::vector<Setup> setups;  ///< one at least
+  std::vector<PartSetup> setups;  ///< one at least
 };
 
 /// True for *.vdb: a part that is what a program leaves.

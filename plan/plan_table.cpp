@@ -22,7 +22,7 @@ std::string number(double v, int decimals = 4) { return format_trimmed(v, decima
 std::string point(const Vec2& p) { return fmt::format("[{}, {}]", number(p.x()), number(p.y())); }
 
 std::string row_toml(const PlannedDivision& plan, std::size_t index, const PlanTool& tool) {
-  const Operation& o = plan.operations[index];
+  const PlanOperation& o = plan.operations[index];
   const Conditions& c = o.conditions;
   std::string out = fmt::format("\n[[operation]]  # {}: {}, {} of {} mm\n", index + 1, to_string(o.feature),
                                 to_string(tool.use), number(tool.tool.diameter_mm));
@@ -47,9 +47,9 @@ std::string row_toml(const PlannedDivision& plan, std::size_t index, const PlanT
 constexpr std::array<std::string_view, 3> kDivisionWords{"yz", "zx", "largest"};
 
 /// The operation that planning makes for the row's primitive and kind, else its primitive's first one.
-const Operation* planned(const PlannedDivision& plan, std::size_t primitive, OperationKind kind) {
-  const Operation* first = nullptr;
-  for (const Operation& o : plan.operations) {
+const PlanOperation* planned(const PlannedDivision& plan, std::size_t primitive, OperationKind kind) {
+  const PlanOperation* first = nullptr;
+  for (const PlanOperation& o : plan.operations) {
     if (o.primitive != primitive) continue;
     if (o.kind == kind) return &o;
     if (first == nullptr) first = &o;
@@ -58,10 +58,10 @@ const Operation* planned(const PlannedDivision& plan, std::size_t primitive, Ope
 }
 
 /// Takes the row's conditions where they are given; the rest by cases where the tool is another one.
-void read_conditions(TomlTable& row, const PlanInput& input, const PlanTool& tool, bool same_tool, Operation& op) {
+void read_conditions(TomlTable& row, const PlanInput& input, const PlanTool& tool, bool same_tool, PlanOperation& op) {
   if (!same_tool) {
     std::string note;
-    const Cut cut{op.kind == OperationKind::finish, op.to_mm - op.from_mm, machine::kNoLimit};
+    const CutNeed cut{op.kind == OperationKind::finish, op.to_mm - op.from_mm, machine::kNoLimit};
     const auto found = conditions_for(input, tool, cut, note);
     if (found)
       op.conditions = *found;
@@ -95,7 +95,7 @@ void read_conditions(TomlTable& row, const PlanInput& input, const PlanTool& too
 }
 
 /// Whether it is cut in one run with the row before.
-void read_joined(TomlTable& row, const std::vector<Operation>& before, Operation& op) {
+void read_joined(TomlTable& row, const std::vector<PlanOperation>& before, PlanOperation& op) {
   op.joined = row.boolean("joined", false);
   if (!op.joined) return;
   constexpr std::string_view kExpected = "; an operation that is cut in one run with the row before was expected";
@@ -116,20 +116,20 @@ void read_joined(TomlTable& row, const std::vector<Operation>& before, Operation
                  "plan-joined");
 }
 
-std::optional<Operation> read_row(TomlTable& row, const PlanInput& input, const PlannedDivision& plan,
-                                  const std::vector<Operation>& before) {
+std::optional<PlanOperation> read_row(TomlTable& row, const PlanInput& input, const PlannedDivision& plan,
+                                      const std::vector<PlanOperation>& before) {
   const double last = static_cast<double>(plan.order.steps.size());
   const auto primitive =
       static_cast<std::size_t>(row.required_number("primitive", {.min = 1, .max = last, .whole = true}));
   const auto kind = row.required_choice("kind", kOperationKinds);
   if (primitive < 1 || !kind) return std::nullopt;
-  const Operation* base = planned(plan, primitive, static_cast<OperationKind>(*kind));
+  const PlanOperation* base = planned(plan, primitive, static_cast<OperationKind>(*kind));
   if (base == nullptr) {
     row.error_at("primitive", fmt::format("no tool machines primitive {}; one that is planned was expected", primitive),
                  "no-operation");
     return std::nullopt;
   }
-  Operation op = *base;
+  PlanOperation op = *base;
   op.kind = static_cast<OperationKind>(*kind);
   const auto tool = row.optional_number("tool", {.min = 1, .max = 99999999, .whole = true});
   if (tool) op.tool = static_cast<int>(*tool);
@@ -184,7 +184,7 @@ void read_operations(const std::string& path, const PlanInput& input, SetupPlan&
   if (!top.has("operation")) top.missing("[[operation]]", "a table for each operation");
   if (division) {
     PlannedDivision plan = setup.plans[*division];
-    std::vector<Operation> rows;
+    std::vector<PlanOperation> rows;
     for (TomlTable& row : top.tables("operation"))
       if (auto op = read_row(row, input, plan, rows)) rows.push_back(std::move(*op));
     plan.operations = std::move(rows);
@@ -198,7 +198,7 @@ void read_operations(const std::string& path, const PlanInput& input, SetupPlan&
   diagnostics.throw_if_errors();
 }
 
-std::string stl_text(const Solid& solid) {
+std::string stl_text(const TriangleSolid& solid) {
   std::string out(80, ' ');
   const auto append = [&](const auto& v) { out.append(reinterpret_cast<const char*>(&v), sizeof v); };
   append(static_cast<std::uint32_t>(solid.triangles.size()));

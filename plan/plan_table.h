@@ -2,7 +2,7 @@
 // The table of operations as a file that the user edits and gives back.
 #include <string>
 
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 
 namespace camber::plan {
 
@@ -15,6 +15,6 @@ std::string operations_toml(const PlanInput& input, const SetupPlan& setup, std:
 void read_operations(const std::string& path, const PlanInput& input, SetupPlan& setup, Diagnostics& diagnostics);
 
 /// Binary STL of a solid.
-std::string stl_text(const Solid& solid);
+std::string stl_text(const TriangleSolid& solid);
 
 }  // namespace camber::plan

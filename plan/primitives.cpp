@@ -319,12 +319,12 @@ std::vector<Rectangles> rectangles_of(const RemovalVolume& removal, const Outlin
   return best;
 }
 
-Primitive primitive_of(const CellGrid& grid, std::vector<CellIndex> cells) {
-  Primitive out;
-  Bounds bounds;
+VolumePrimitive primitive_of(const CellGrid& grid, std::vector<CellIndex> cells) {
+  VolumePrimitive out;
+  SolidBounds bounds;
   std::ranges::sort(cells);
   for (const CellIndex& c : cells) {
-    const Cell& cell = grid.at(c);
+    const GridCell& cell = grid.at(c);
     out.volume_mm3 += cell.removal_mm3();
     out.free_form = out.free_form || cell.kind == CellKind::free_form;
     out.contoured = out.contoured || cell.kind == CellKind::contoured;
@@ -347,7 +347,8 @@ std::vector<CellIndex> cells_of(const Region& region, const Outline& outline, co
   return cells;
 }
 
-void add_boxes(const RemovalVolume& removal, const Region& region, DivisionPlan plan, std::vector<Primitive>& out) {
+void add_boxes(const RemovalVolume& removal, const Region& region, DivisionPlan plan,
+               std::vector<VolumePrimitive>& out) {
   if (region.free_form) {
     out.push_back(primitive_of(removal.grid, region.cells));
     return;
@@ -357,8 +358,8 @@ void add_boxes(const RemovalVolume& removal, const Region& region, DivisionPlan 
     out.push_back(primitive_of(removal.grid, cells_of(region, outline, r)));
 }
 
-Primitive primitive_of(const Hole& hole, std::size_t number) {
-  Primitive out;
+VolumePrimitive primitive_of(const Hole& hole, std::size_t number) {
+  VolumePrimitive out;
   out.is_hole = true;
   out.hole = number;
   out.volume_mm3 = hole.volume_mm3;
@@ -370,8 +371,8 @@ Primitive primitive_of(const Hole& hole, std::size_t number) {
 
 }  // namespace
 
-std::vector<Primitive> divide(const RemovalVolume& removal, DivisionPlan plan) {
-  std::vector<Primitive> out;
+std::vector<VolumePrimitive> divide(const RemovalVolume& removal, DivisionPlan plan) {
+  std::vector<VolumePrimitive> out;
   for (const Region& region : regions_of(removal.grid, removal.narrowest_mm)) add_boxes(removal, region, plan, out);
   for (std::size_t h = 0; h < removal.holes.size(); ++h) out.push_back(primitive_of(removal.holes[h], h));
   return out;

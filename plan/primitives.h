@@ -13,7 +13,7 @@ enum class DivisionPlan : unsigned char { yz, zx, largest };
 inline constexpr std::array<DivisionPlan, 3> kDivisionPlans{DivisionPlan::yz, DivisionPlan::zx, DivisionPlan::largest};
 std::string_view to_string(DivisionPlan plan);
 
-struct Primitive {
+struct VolumePrimitive {
   bool is_hole = false;
   bool free_form = false;        ///< one of its faces is
   bool contoured = false;        ///< a part stays in it, with upright walls
@@ -33,6 +33,6 @@ struct Primitive {
 /// region. A box narrower than the smallest mill that lies along another one is joined to that, and a layer thinner
 /// than a tenth of it to the layer below where that is no larger: then a primitive has more than one box. Boxes first,
 /// by layer from below; then holes.
-std::vector<Primitive> divide(const RemovalVolume& removal, DivisionPlan plan);
+std::vector<VolumePrimitive> divide(const RemovalVolume& removal, DivisionPlan plan);
 
 }  // namespace camber::plan

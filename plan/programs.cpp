@@ -3,25 +3,59 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
-#include "base/temporary_folder.h"
+#include "base/folders.h"
+#include "base/output_file.h"
 #include "base/units.h"
-#include "copymill/copy.h"
+#include "compensate/compensate.h"
+#include "copymill/copy_milling.h"
 #include "feedmodel/cycle_time.h"
 #include "kinematics/control_options.h"
 #include "kinematics/machine_program.h"
+#include "machine/job_file.h"
 #include "machine/number_key.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
-#include "plan/compensated_program.h"
 #include "simulate/collisions.h"
 #include "simulate/flute_reach.h"
 #include "simulate/predict.h"
 
 namespace camber::plan {
 namespace {
+
+struct CompensatedProgram {
+  std::string text;  ///< the given one where compensation is of no use
+  std::string note;  ///< form error before and after, or why it stays as it is
+};
+
+CompensatedProgram kept(const std::string& text, const std::string& why) { return {text, "not compensated: " + why}; }
+
+/// `stock_vdb`: what stands before the operation. The part's mesh is the target. Throws Cancelled.
+CompensatedProgram compensated(const machine::Job& job, const std::string& stock_vdb, const std::string& text) {
+  const TemporaryFolder folder;
+  machine::Job of = job;
+  of.program = folder.path() + "/finish" + std::string(kinematics::dialect_of(job.machine.control.kind).file_extension);
+  of.stock = {};
+  of.stock.vdb = stock_vdb;
+  write_file(of.program, text);
+  try {
+    Diagnostics ignored;  // of a program that is not the one that is written
+    const compensate::CompensationResult done = compensate::compensate(of, ignored, {});
+    const double before = done.figures.before_um.p95, after = done.figures.after_um.p95;
+    if (!done.verdict.better)
+      return kept(text, fmt::format("its form error, {:.1f} um (p95), does not become less", before));
+    return {done.emitted.text,
+            fmt::format("compensated: form error {:.1f} um (p95) without, {:.1f} um with it, both predicted", before,
+                        after)};
+  } catch (const BeyondModel& beyond) {
+    return kept(text, beyond.what());
+  } catch (const InputError& error) {
+    return kept(text, error.diagnostics().front().message);
+  }
+}
 
 machine::CopyMode mode_of(Pattern pattern) {
   switch (pattern) {
@@ -45,12 +79,12 @@ double without_noise(double mm) {
 Vec2 rounded(const Vec2& p) { return {to_micrometres(p.x()), to_micrometres(p.y())}; }
 
 /// Rows run along the longer side.
-double row_angle_rad(const Operation& o) {
+double row_angle_rad(const PlanOperation& o) {
   const Vec2 size = o.box_mm[1] - o.box_mm[0];
   return size.x() >= size.y() ? 0 : kPi / 2;
 }
 
-machine::CopyOperation copy_operation(const Operation& o) {
+machine::CopyOperation copy_operation(const PlanOperation& o) {
   machine::CopyOperation out;
   out.tool = o.tool;
   out.mode = mode_of(o.pattern);
@@ -115,7 +149,7 @@ std::size_t refused(const InputError& error) {
 class SavedStocks {
  public:
   explicit SavedStocks(const PlannedDivision& plan) {
-    for (const Operation& o : plan.operations) finishes_.push_back(o.kind == OperationKind::finish);
+    for (const PlanOperation& o : plan.operations) finishes_.push_back(o.kind == OperationKind::finish);
   }
   bool has(std::size_t operation) const { return finishes_[operation]; }
   std::string path(std::size_t operation) const { return fmt::format("{}/stock-{}.vdb", folder_.path(), operation); }
@@ -171,7 +205,7 @@ void add_warnings(const machine::Job& job, const std::string& name, const std::s
 std::vector<machine::CopyOperation> copy_operations(const PlanInput& input, const PlannedDivision& plan) {
   std::vector<machine::CopyOperation> out;
   for (std::size_t i = 0; i < plan.operations.size(); ++i) {
-    const Operation& o = plan.operations[i];
+    const PlanOperation& o = plan.operations[i];
     if (o.joined) {
       join_to(out.back(), copy_operation(o));
       continue;
@@ -223,8 +257,8 @@ PlanProgram make_program(const PlanInput& input, const machine::Job& job, const 
     out.each[i] = nc::text_of(dialect, one);
     if (saved && saved->has(i)) {
       CompensatedProgram done = compensated(job, saved->path(i), out.each[i]);
-      written.operations[k] = nc::operation_of(dialect, one, done.text);
-      out.each[i] = std::move(done.text);
+      written.operations[k] = nc::operation_of(dialect, one, done.emitted.text);
+      out.each[i] = std::move(done.emitted.text);
       out.notes[i] = std::move(done.note);
     }
     out.times_s[i] = cycle_time_of(name, out.each[i], job).all.time.total_s();

@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "machine/copy_operations.h"
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 
 namespace camber::plan {
 
@@ -15,7 +15,7 @@ struct PlanProgram {
   std::vector<std::string> each;   ///< one an operation; a run's is its first operation's, the others have none
   std::vector<double> times_s;     ///< time of each, by the feed model, with its rapids; 0 where there is none
   std::vector<std::string> notes;  ///< note about each; mostly empty
-  ProgramFigures figures;
+  PlanProgramFigures figures;
 };
 
 /// The operations as [[copy]] tables of a job, joined ones as one.

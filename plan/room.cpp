@@ -69,7 +69,7 @@ double Rect::distance(const Rect& o) const {
   return std::hypot(std::max({x0 - o.x1, o.x0 - x1, 0.0}), std::max({y0 - o.y1, o.y0 - y1, 0.0}));
 }
 
-Room::Room(const Solid& stays, const Rect& middles, double radius_mm, double above_mm)
+Room::Room(const TriangleSolid& stays, const Rect& middles, double radius_mm, double above_mm)
     : middles_(middles), radius_mm_(radius_mm), low_(middles.x0 - radius_mm, middles.y0 - radius_mm) {
   const double w = middles.x1 - middles.x0 + 2 * radius_mm, h = middles.y1 - middles.y0 + 2 * radius_mm;
   constexpr double kFewest = 200, kMost = 800, kPerRadius = 12;
@@ -79,7 +79,7 @@ Room::Room(const Solid& stays, const Rect& middles, double radius_mm, double abo
   for (const Triangle& t : stays.triangles) stand(stays, t, above_mm);
 }
 
-void Room::stand(const Solid& stays, const Triangle& t, double above_mm) {
+void Room::stand(const TriangleSolid& stays, const Triangle& t, double above_mm) {
   const Vec3 n = stays.normal_by_area(t);
   if (n.z() <= 0) return;
   const Vec3 &a = stays.corner(t, 0), &b = stays.corner(t, 1), &c = stays.corner(t, 2);

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "plan/solid.h"
+#include "plan/triangle_solid.h"
 
 namespace camber::plan {
 
@@ -20,7 +20,7 @@ class Room {
  public:
   /// Obstacles are the places of `middles` and a radius round it where `stays` is higher than `above_mm`. Steps are a
   /// twelfth of the radius where that makes 200 to 800 of them along the longer side.
-  Room(const Solid& stays, const Rect& middles, double radius_mm, double above_mm);
+  Room(const TriangleSolid& stays, const Rect& middles, double radius_mm, double above_mm);
 
   /// Area of the places that `wanted` names and where nothing stands, but which no cutter covers whose middle is within
   /// `middles` and which touches no obstacle. Exact to about a step along the outlines.
@@ -34,7 +34,7 @@ class Room {
   std::size_t at(int i, int j) const {
     return static_cast<std::size_t>(i) * static_cast<std::size_t>(ny_) + static_cast<std::size_t>(j);
   }
-  void stand(const Solid& stays, const Triangle& t, double above_mm);
+  void stand(const TriangleSolid& stays, const Triangle& t, double above_mm);
 
   Rect middles_;
   double radius_mm_, step_mm_;

@@ -6,7 +6,7 @@
 namespace camber::plan {
 namespace {
 
-void add_level(Solid& out, double x0, double x1, double y0, double y1, double z, bool up) {
+void add_level(TriangleSolid& out, double x0, double x1, double y0, double y1, double z, bool up) {
   const auto first = static_cast<std::uint32_t>(out.points.size());
   out.points.insert(out.points.end(), {{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}});
   if (up) {

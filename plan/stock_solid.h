@@ -8,7 +8,7 @@
 namespace camber::plan {
 
 struct StockBlank {
-  Solid solid;  ///< faces up and down of every column of voxels
+  TriangleSolid solid;  ///< faces up and down of every column of voxels
   std::array<std::vector<AxisPlane>, 3> planes;
 };
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "base/stl.h"
-#include "machine/job.h"
+#include "base/triangle_mesh.h"
+#include "machine/tool.h"
 #include "nc/move.h"
 
 namespace camber::posture {

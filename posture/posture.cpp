@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "base/units.h"
 #include "deflection/beam.h"
 #include "deflection/edge_force.h"

@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/five_axis_words.h"
 #include "nc/move.h"
 #include "nc/program.h"

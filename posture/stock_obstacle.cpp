@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "removal/stock.h"
 #include "simulate/job_stock.h"
 #include "simulate/predict.h"

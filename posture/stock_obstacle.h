@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "posture/surroundings.h"

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 
 #include "base/convex_distance.h"
-#include "base/mesh_file.h"
 #include "base/tool_pose.h"
+#include "base/triangle_mesh.h"
 #include "simulate/tool_outline.h"
 #include "simulate/tool_surface.h"
 

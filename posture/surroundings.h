@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "base/stl.h"
-#include "machine/job.h"
+#include "base/triangle_mesh.h"
+#include "machine/machine.h"
+#include "machine/tool.h"
 #include "simulate/machine_solids.h"
 
 namespace camber::posture {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "machine/job.h"
+#include "machine/tool.h"
 #include "removal/profile.h"
 
 namespace camber::removal {

@@ -16,15 +16,18 @@
 // - DeflectedEngager: the cutter is deflected, and its deflection depends on the chips. It takes one stamp at a time:
 //   read() with the current deflection, as often as that changes, then cut(). engage/upright/chip_reader reads patches
 //   of the envelope and also returns how each depth changes with the deflection.
-// - StepEngager: for a path that is made while it is cut (removal/step_engagement.h).
+// - StepEngager: for a path that is made while it is cut.
 // - sweep(): carves without reading chips, for blanks, targets and checks.
 //
 // Upright paths use engage/upright/ and field/upright/; every other path uses engage/tilted/ and field/tilted/, which
-// work in the tool's frame of each stamp. Where a cut changes slowly, a glance (engage/glance.h) at an eighth of the
-// envelope shows whether a stamp has to be read at all.
+// work in the tool's frame of each stamp. An engager chooses when it is made (engage/engaged_path.h). Where a cut
+// changes slowly, a glance (engage/patch_reading.h) at an eighth of the envelope shows whether a stamp has to be read
+// at all.
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -40,7 +43,8 @@ class Stage;
 
 namespace camber::removal {
 
-struct KnownRun;  // removal/known_run.h
+class DeflectedPath;  // removal/engage/engaged_path.h
+struct KnownRun;      // removal/known_run.h
 
 namespace upright {
 struct BlockPoints;  // removal/simd/upright_block_kernels.h
@@ -245,8 +249,7 @@ class DeflectedEngager {
   double commit();
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<DeflectedPath> path_;
 };
 
 struct SweepOptions {
@@ -257,5 +260,48 @@ struct SweepOptions {
 
 /// Carves the undeflected cutter through the stock, without engagement. Returns the volume removed, mm^3.
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options);
+
+/// Where tips of a run may stand.
+struct TipBox {
+  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();
+  bool contains(const Vec3& tip_mm) const;
+};
+
+/// The chips of the undeflected cutter, stamp by stamp, as RigidEngager has them for a whole run. Each stamp is read
+/// from the stock as the ones before it left it, so that nothing depends on how many are known at once. For one run of
+/// one upright tool, and one thread.
+///
+/// A stamp takes memory of 12 bytes for its place. Tiles of the stock stay in memory while they may be needed again, no
+/// more than a few times as many as the cutter touches at once.
+class StepEngager {
+ public:
+  /// `blank`: the stock before the first stamp. Ids in the stock are first_id + number; smaller ids count as blank.
+  /// `pitches`: as RigidEngager has it. Everything passed must outlive the object.
+  StepEngager(Stock& stock, const Stock& blank, const EnvelopeGrid& envelope, const TipBox& tips, std::int32_t first_id,
+              int pitches = 1);
+  ~StepEngager();
+
+  const EnvelopeBlocks& blocks() const;
+  /// Stamps that were cut.
+  std::size_t count() const;
+  /// The chips of a stamp in the stock as it stands. Requires an upright tool with its tip in the box. Valid until the
+  /// next call.
+  std::span<const ChipBlock> read(const Stamp& stamp);
+  static constexpr int kAll = std::numeric_limits<int>::max();
+  /// Reads tiles that a cutter with its tip there, or in the box nearest to it, would meet and that are not in memory,
+  /// in `most` steps of about a tenth of a millisecond; what is not read beforehand is read by the stamp that comes
+  /// near it. Gives up tiles that are not needed, as many at most.
+  void approach(const Vec3& tip_mm, int most);
+  /// Cuts a stamp. The stock is written lazily, tile by tile.
+  void cut(const Stamp& stamp);
+  /// As Stock::distance_mm, of the stock as it stands.
+  double distance_mm(const Vec3& place_mm) const;
+  /// Writes all pending tiles to the stock and goes on. Returns the volume removed since the last time, mm^3.
+  double flush();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace camber::removal

@@ -1,18 +1,46 @@
 #pragma once
-// Form error: points of the target surface with the height of the machined surface along their normals, and statistics.
+// Form error: points of the target surface with the height of the machined surface along their normals, statistics, and
+// the part as a mesh.
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/geometry.h"
+#include "base/triangle_mesh.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 
 namespace camber::removal {
+
+/// Reads an STL. Throws InputError [file-missing], [stl-format], [stl-empty], [stl-open] (an edge without a second
+/// triangle: the mesh has no inside).
+TriangleMesh read_closed_stl(const std::string& path);
+
+/// Signed distances to a closed mesh, negative inside, exact to the rounding of its coordinates. Found through a tree
+/// of boxes around the triangles; the sign is that of the angle-weighted normal at the nearest place (Baerentzen and
+/// Aanaes, "Signed distance computation using the angle weighted pseudonormal", 2005).
+class PartMesh {
+ public:
+  /// What read_closed_stl throws.
+  explicit PartMesh(const std::string& stl_path);
+  explicit PartMesh(const TriangleMesh& closed);
+  ~PartMesh();
+  PartMesh(PartMesh&&) noexcept;
+
+  double distance_mm(const Vec3& point) const;  ///< thread safe
+  const Vec3& min_mm() const { return min_mm_; }
+  const Vec3& max_mm() const { return max_mm_; }
+
+ private:
+  class Tree;
+  Vec3 min_mm_, max_mm_;
+  std::unique_ptr<Tree> tree_;
+};
 
 /// Undeflected cutters by stamp id. Ids are added in ascending order.
 class CutterPlaces {

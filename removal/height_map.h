@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "removal/cutter.h"
 
 namespace camber::removal {

@@ -22,8 +22,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "base/confined_files.h"
 #include "base/diagnostics.h"
+#include "base/folders.h"
 #include "base/output_file.h"
 #include "base/stage.h"
 #include "base/window_buffer.h"

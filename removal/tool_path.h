@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,8 @@
 #include "feedmodel/part_tracking.h"
 #include "feedmodel/path_tracker.h"
 #include "feedmodel/timed_path.h"
-#include "machine/job.h"
+#include "machine/simulation_settings.h"
+#include "machine/tool.h"
 #include "nc/move.h"
 
 namespace camber::removal {
@@ -162,6 +164,45 @@ class StampBuilder {
   std::uint32_t next_move_ = 0;  ///< whose beginning was not met yet
   std::uint32_t next_hole_ = 0;  ///< move whose hole, if any, is not finished yet
   double hole_fraction_ = 0;     ///< of next_hole_'s length, at the last sample
+};
+
+/// A stamp and its number in the path; of `run` the count is not known yet.
+using StampSink = std::function<void(const ToolRun& run, std::size_t number, const Stamp& stamp)>;
+
+/// While it lives, a StampBuilder of this thread gives its stamps to `sink`, and keeps none but the last: take() has
+/// the runs and rapids. Only one may live in a thread; `sink` must outlive it.
+class StampSinkScope {
+ public:
+  explicit StampSinkScope(const StampSink& sink);
+  ~StampSinkScope();
+  StampSinkScope(const StampSinkScope&) = delete;
+  StampSinkScope& operator=(const StampSinkScope&) = delete;
+};
+
+/// A stamp of nominal_path() and its number there; of `run` the count is not known yet.
+using TakeNominal = StampSink;
+
+/// Gives all stamps of nominal_path() in order, and returns its runs. Called twice it gives the same.
+std::vector<ToolRun> follow_nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected,
+                                         const StampPath& path, const kinematics::PartPath* rotary,
+                                         const TakeNominal& take);
+
+/// The same for a path whose stamps come one by one.
+class NominalFollower {
+ public:
+  NominalFollower(const nc::Interpretation& program, const std::vector<bool>& selected,
+                  const kinematics::PartPath* rotary, TakeNominal take);
+  ~NominalFollower();
+  NominalFollower(const NominalFollower&) = delete;
+  NominalFollower& operator=(const NominalFollower&) = delete;
+  /// All stamps of the path in order, with their runs.
+  void add(const ToolRun& run, const Stamp& stamp);
+  /// Gives the rest, and returns the runs.
+  std::vector<ToolRun> finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace camber::removal

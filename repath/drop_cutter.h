@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "repath/contact.h"
 
 namespace camber::repath {

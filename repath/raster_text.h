@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/tool.h"
 #include "nc/dialect.h"
 
 namespace camber::repath {

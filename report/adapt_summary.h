@@ -3,7 +3,7 @@
 #include <string>
 
 #include "adapt/adapt.h"
-#include "machine/job.h"
+#include "machine/adapt_settings.h"
 
 namespace camber::report {
 

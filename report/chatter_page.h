@@ -1,6 +1,6 @@
 #pragma once
 // What a page shows of chatter: a table of the operations, and the lobes of those that are nearest to it.
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "report/html_report.h"
 #include "simulate/predict.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "kinematics/feed_meaning.h"
 #include "kinematics/pose_track.h"
 #include "machine/machine.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 
 namespace camber::report {
 

@@ -10,7 +10,7 @@
 
 #include "base/json.h"
 #include "base/output_file.h"
-#include "inspect/model_error.h"
+#include "inspect/evaluate.h"
 #include "report/page_tables.h"
 
 namespace camber::report {

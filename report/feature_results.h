@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "inspect/evaluate.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "report/html_report.h"
 
 namespace camber::report {

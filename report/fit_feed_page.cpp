@@ -113,7 +113,7 @@ std::vector<const PartAccuracy*> worst_parts(const calib::FeedAccuracy& accuracy
   return parts;
 }
 
-std::string lines_text(const calib::Part& part) { return fmt::format("{}-{}", part.line_first, part.line_last); }
+std::string lines_text(const calib::TracePart& part) { return fmt::format("{}-{}", part.line_first, part.line_last); }
 
 std::string run_card(const calib::RunAccuracy& run) {
   std::string body =

@@ -2,7 +2,7 @@
 // The page of camber fit-feed: measured against modelled speed, residuals, parameters.
 #include <string>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 
 namespace camber::report {
 

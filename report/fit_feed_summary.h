@@ -6,7 +6,7 @@
 
 #include "calib/block_time.h"
 #include "calib/cross_validate.h"
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "calib/fit_stretches.h"
 
 namespace camber::report {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/json.h"
-#include "machine/mode_reader.h"
+#include "machine/job_tables.h"
 
 namespace camber::report {
 

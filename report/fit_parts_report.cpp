@@ -11,9 +11,9 @@
 #include <fmt/ranges.h>
 
 #include "machine/force_law.h"
+#include "machine/job_tables.h"
 #include "machine/material_reader.h"
 #include "machine/number_key.h"
-#include "machine/tool_reader.h"
 #include "report/html_report.h"
 #include "report/page_tables.h"
 

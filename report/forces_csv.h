@@ -6,7 +6,7 @@
 
 #include "base/geometry.h"
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/predict.h"
 
 namespace camber::report {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "kinematics/pose_track.h"
 #include "machine/machine.h"
 #include "report/html_report.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/json.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "report/path_rows.h"
 #include "simulate/tool_outline.h"
 

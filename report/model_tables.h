@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "report/html_report.h"
 
 namespace camber::report {

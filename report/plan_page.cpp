@@ -24,7 +24,7 @@ double rounded(double v) { return std::round(1000 * v) / 1000; }
 Json place_json(const Vec3& p) { return {rounded(p.x()), rounded(p.y()), rounded(p.z())}; }
 
 /// Boxes of a primitive: itself, or of a free-form one its cells.
-Json boxes_json(const plan::Primitive& p, const plan::CellGrid& grid) {
+Json boxes_json(const plan::VolumePrimitive& p, const plan::CellGrid& grid) {
   Json out = Json::array();
   const Vec3 size = p.max_mm - p.min_mm;
   double cells = 0;
@@ -39,7 +39,7 @@ Json boxes_json(const plan::Primitive& p, const plan::CellGrid& grid) {
 Json primitives_json(const PlannedDivision& p, const plan::CellGrid& grid) {
   Json out = Json::array();
   for (const plan::Step& step : p.order.steps) {
-    const plan::Primitive& of = p.primitives[step.primitive];
+    const plan::VolumePrimitive& of = p.primitives[step.primitive];
     const Vec3 size = of.max_mm - of.min_mm;
     out.push_back({{"name", fmt::format("{}, {:.4g} x {:.4g} x {:.4g} mm, {:.0f} mm3, {} open faces",
                                         plan::to_string(step.feature), size.x(), size.y(), size.z(), of.volume_mm3,
@@ -98,7 +98,7 @@ TextTable plans_table(const SetupPlan& s) {
   for (std::size_t i = 0; i < s.plans.size(); ++i) {
     const PlannedDivision& p = s.plans[i];
     std::vector<int> tools;
-    for (const plan::Operation& o : p.operations)
+    for (const plan::PlanOperation& o : p.operations)
       if (std::ranges::find(tools, o.tool) == tools.end()) tools.push_back(o.tool);
     table.rows.push_back({std::string(plan::to_string(p.division)), fmt::format("{}", p.primitives.size()),
                           fmt::format("{}", p.operations.size()), fmt::format("{}", tools.size()),
@@ -122,7 +122,7 @@ TextTable operations_table(const plan::PlanInput& input, const SetupPlan& s) {
                   "nothing."};
   const PlannedDivision& p = s.plans[s.best];
   for (std::size_t i = 0; i < p.operations.size(); ++i) {
-    const plan::Operation& o = p.operations[i];
+    const plan::PlanOperation& o = p.operations[i];
     const plan::PlanTool& t = input.tools.at(o.tool);
     const plan::Conditions& c = o.conditions;
     std::string notes = o.joined ? fmt::format("in one run with operation {}", plan::first_of_run(p, i) + 1) : "";

@@ -13,8 +13,8 @@
 
 namespace camber::report {
 
-using plan::Operation;
 using plan::PlannedDivision;
+using plan::PlanOperation;
 using plan::SetupPlan;
 
 namespace {
@@ -24,7 +24,7 @@ std::string_view word(plan::OperationKind k) { return plan::kOperationKinds[stat
 
 Json corner(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-Json operation_json(const Operation& o) {
+Json operation_json(const PlanOperation& o) {
   const plan::Conditions& c = o.conditions;
   Json j{{"primitive", o.primitive},
          {"tool", o.tool},
@@ -51,7 +51,7 @@ Json operation_json(const Operation& o) {
 
 Json primitive_json(const PlannedDivision& p, std::size_t number) {
   const plan::Step& step = p.order.steps[number];
-  const plan::Primitive& of = p.primitives[step.primitive];
+  const plan::VolumePrimitive& of = p.primitives[step.primitive];
   return {{"primitive", number + 1},      {"feature", plan::to_string(step.feature)},
           {"from_mm", corner(of.min_mm)}, {"to_mm", corner(of.max_mm)},
           {"volume_mm3", of.volume_mm3},  {"open_faces", step.open.count()},
@@ -84,12 +84,12 @@ Json setup_json(const SetupPlan& s) {
   j["primitives"] = Json::array();
   for (std::size_t i = 0; i < best.order.steps.size(); ++i) j["primitives"].push_back(primitive_json(best, i));
   j["operations"] = Json::array();
-  for (const Operation& o : best.operations) j["operations"].push_back(operation_json(o));
+  for (const PlanOperation& o : best.operations) j["operations"].push_back(operation_json(o));
   return j;
 }
 
-std::string size_text(const Operation& o, const PlannedDivision& p) {
-  const plan::Primitive& of = p.primitives[p.order.steps[o.primitive - 1].primitive];
+std::string size_text(const PlanOperation& o, const PlannedDivision& p) {
+  const plan::VolumePrimitive& of = p.primitives[p.order.steps[o.primitive - 1].primitive];
   const Vec3 size = of.max_mm - of.min_mm;
   return fmt::format("{:.4g} x {:.4g} x {:.4g}", size.x(), size.y(), size.z());
 }
@@ -98,7 +98,7 @@ std::string operations_text(const plan::PlanInput& input, const PlannedDivision&
   std::string out = fmt::format("{:>2} {:<14}{:<8}{:<18}{:>7}{:>7}{:>6}{:>6}{:>8}  {}\n", "", "feature", "kind", "tool",
                                 "S", "F", "RD", "AD", "s", "limit");
   for (std::size_t i = 0; i < p.operations.size(); ++i) {
-    const Operation& o = p.operations[i];
+    const PlanOperation& o = p.operations[i];
     const plan::PlanTool& t = input.tools.at(o.tool);
     out +=
         fmt::format("{:>2} {:<14}{:<8}{:<18}{:>7.0f}{:>7.0f}{:>6}{:>6}{:>8.1f}  {}\n", i + 1, to_string(o.feature),
@@ -142,7 +142,7 @@ std::string plan_json(const plan::PlanInput&, const plan::PlanResult& result, do
   j["setups"] = Json::array();
   for (const SetupPlan& s : result.setups) {
     j["setups"].push_back(setup_json(s));
-    for (const Operation& o : s.plans[s.best].operations) j["operations"].push_back(operation_json(o));
+    for (const PlanOperation& o : s.plans[s.best].operations) j["operations"].push_back(operation_json(o));
   }
   j["compute_s"] = compute_s;
   return j.dump(2) + "\n";

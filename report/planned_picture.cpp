@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "base/units.h"
+#include "feedmodel/motion_plan.h"
 #include "feedmodel/path_builder.h"
-#include "feedmodel/plan.h"
 
 namespace camber::report {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "base/units.h"
 #include "report/machine_page.h"
 #include "report/page_tables.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kinematics/pose_track.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/five_axis_words.h"
 #include "posture/posture.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "nc/interpreter.h"
 #include "repath/compress.h"
 #include "repath/fastest.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "feedmodel/cycle_time.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "nc/summary.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/predict.h"
 
 namespace camber::report {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "machine/stock_comments.h"
+#include "machine/program_comments.h"
 #include "nc/known_places.h"
 #include "nc/summary.h"
 #include "report/cut_depths.h"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "machine/tool_proposal.h"
+#include "machine/workpiece.h"
 #include "nc/move.h"
 #include "nc/program.h"
 
@@ -24,7 +25,7 @@ struct StockProposal {
   std::string placed{};     ///< how a blank of which only the size is told was placed; empty: its place is told too
 };
 
-/// The box that the program describes (BLK FORM), or a comment (machine/stock_comments.h), if it meets the cutting
+/// The box that the program describes (BLK FORM), or a comment (machine/program_comments.h), if it meets the cutting
 /// moves. Else: a box around everything that the cutting moves sweep, 2 mm wider and 1 mm deeper.
 ///
 /// Its top is Z0 where the program cuts below Z0 only, else 1 mm above the highest pass (feed moves as high as rapids

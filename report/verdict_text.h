@@ -5,7 +5,7 @@
 
 #include "compensate/compensate.h"
 #include "compensate/verify.h"
-#include "machine/job.h"
+#include "machine/compensation_settings.h"
 
 namespace camber::report {
 

@@ -14,7 +14,8 @@ struct ChatterOperation {
   std::size_t line = 0;   ///< 1-based, of the worst passing
   double margin = 0;      ///< depth over critical depth there; above 1 the cut is unstable
   double chatter_hz = 0;  ///< heard at its border
-  double depth_mm = 0, arc_rad = 0, centre_rad = 0, kt_MPa = 0, kr_MPa = 0;  ///< the cut there (dynamics/cut.h)
+  double depth_mm = 0, arc_rad = 0, centre_rad = 0, kt_MPa = 0,
+         kr_MPa = 0;                       ///< the cut there (dynamics/vibrating_cut.h)
   double probability = 0;                  ///< that it chatters, with the modes at their errors
   double margin_low = 0, margin_high = 0;  ///< of eight of ten draws of the modes within their errors
   double stable_speed_rpm = 0;  ///< nearest speed within the spindle's limits with a margin of kAdvisedMargin; 0: none

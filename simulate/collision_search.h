@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/stock.h"
 #include "simulate/collisions.h"
 #include "simulate/predict.h"

@@ -1,7 +1,7 @@
 #pragma once
 // Checks for material above the flutes or above the holder face, which would be cut without a force.
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/stock.h"
 #include "simulate/height_survey.h"
 #include "simulate/predict.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "feedmodel/rapid.h"
 #include "removal/tool_path.h"
 #include "simulate/collision_search.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/height_map.h"
 #include "simulate/collisions.h"
 #include "simulate/predict.h"

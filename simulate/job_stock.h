@@ -2,9 +2,8 @@
 // The stock that a job describes.
 #include <functional>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/stock.h"
-#include "removal/stock_part.h"
 
 namespace camber::simulate {
 

@@ -4,8 +4,9 @@
 #include <memory>
 #include <span>
 
-#include "machine/job.h"
-#include "removal/step_engagement.h"
+#include "machine/material.h"
+#include "machine/tool.h"
+#include "removal/engagement.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/cut.h"

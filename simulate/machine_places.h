@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kinematics/chain.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 
 namespace camber::simulate {
 namespace {

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "base/convex_distance.h"
-#include "machine/body.h"
-#include "machine/job.h"
+#include "machine/machine.h"
+#include "machine/tool.h"
 #include "simulate/tool_outline.h"
 
 namespace camber::simulate {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "removal/tile_size.h"
+#include "removal/stock.h"
 
 namespace camber::simulate {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "base/free_memory.h"
+#include "base/process_memory.h"
 #include "deflection/tooth_pass.h"
 #include "removal/cutter.h"
 #include "removal/form_error.h"

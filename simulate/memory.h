@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
-#include "removal/stock_part.h"
+#include "removal/stock.h"
 #include "removal/tool_path.h"
 
 namespace camber::simulate {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/simulation_settings.h"
 #include "nc/move.h"
 #include "nc/program.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "deflection/part_compliance.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/form_error.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "dynamics/stability_table.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/predict.h"
 
 namespace camber::simulate {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "removal/stock_part.h"
+#include "removal/stock.h"
 #include "removal/tool_path.h"
 
 namespace camber::simulate {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "base/sparse_list.h"
+#include "machine/job_file.h"
+#include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/path_outline.h"
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "machine/job.h"
-#include "removal/stock_part.h"
+#include "machine/job_file.h"
+#include "removal/stock.h"
 #include "simulate/cut.h"
 #include "simulate/path_stretch.h"
 #include "simulate/predict.h"

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "base/freed_memory.h"
+#include "base/process_memory.h"
 #include "base/stage.h"
 #include "nc/interpreter.h"
 #include "removal/engagement.h"
-#include "removal/nominal_path.h"
+#include "removal/tool_path.h"
 #include "simulate/chatter.h"
 #include "simulate/contour.h"
 #include "simulate/job_checks.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/height_map.h"
 #include "simulate/predict.h"
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 #include "base/units.h"
 #include "kinematics/joint_map.h"
 #include "simulate/job_checks.h"

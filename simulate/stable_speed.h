@@ -2,7 +2,7 @@
 // Spindle speeds at which all cuts of a tool are stable.
 #include <span>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/chatter_margins.h"
 #include "simulate/predict.h"
 

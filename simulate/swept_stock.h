@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/stage.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/cutter.h"
 #include "removal/stock.h"
 #include "simulate/predict.h"

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "removal/height_map.h"
 #include "simulate/predict.h"
 

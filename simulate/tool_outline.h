@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/tool.h"
 #include "removal/profile.h"
 #include "removal/tool_path.h"
 

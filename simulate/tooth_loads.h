@@ -5,7 +5,7 @@
 
 #include "base/tool_pose.h"
 #include "deflection/tooth_pass.h"
-#include "machine/job.h"
+#include "machine/tool.h"
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
 #include "removal/stock.h"

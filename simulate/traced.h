@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "feedmodel/timed_path.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/predict.h"
 
 namespace camber::simulate {

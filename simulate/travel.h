@@ -1,7 +1,7 @@
 #pragma once
 // Travel of the axes.
 #include "base/diagnostics.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "simulate/predict.h"

@@ -19,9 +19,9 @@
 #include <opencascade/TopoDS_Face.hxx>
 #include <opencascade/TopoDS_Shape.hxx>
 
-#include "base/confined_files.h"
 #include "base/diagnostics.h"
-#include "base/mesh_file.h"
+#include "base/folders.h"
+#include "base/triangle_mesh.h"
 #include "base/units.h"
 
 namespace camber {

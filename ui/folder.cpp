@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "base/confined_files.h"
 #include "base/diagnostics.h"
+#include "base/folders.h"
 #include "base/output_file.h"
 
 namespace camber::ui {

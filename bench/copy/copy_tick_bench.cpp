@@ -14,8 +14,8 @@
 #include <tbb/global_control.h>
 
 #include "bench/copy/process_figures.h"
-#include "copymill/copy.h"
-#include "machine/unprogrammed_job.h"
+#include "copymill/copy_milling.h"
+#include "machine/job_file.h"
 
 namespace {
 

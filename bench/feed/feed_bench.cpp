@@ -6,8 +6,8 @@
 
 #include "feedmodel/axes.h"
 #include "feedmodel/lookahead.h"
+#include "feedmodel/motion_plan.h"
 #include "feedmodel/path_builder.h"
-#include "feedmodel/plan.h"
 #include "feedmodel/timed_path.h"
 
 namespace {

@@ -11,7 +11,9 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
-#include "machine/job.h"
+#include "machine/material.h"
+#include "machine/simulation_settings.h"
+#include "machine/tool.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 #include "simulate/cut.h"

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "removal/engage/upright/block_reader.h"
+#include "removal/engagement.h"
 #include "removal/field/cell.h"
 #include "removal/field/upright/batch_cut.h"
 #include "removal/field/upright/carve.h"
 #include "removal/field/upright/step_arena.h"
-#include "removal/step_engagement.h"
 
 namespace camber::removal {
 

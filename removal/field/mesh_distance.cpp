@@ -6,10 +6,10 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
-#include "base/free_memory.h"
-#include "base/stl.h"
+#include "base/process_memory.h"
+#include "base/triangle_mesh.h"
 #include "removal/field/mesh_memory.h"
-#include "removal/part_mesh.h"
+#include "removal/form_error.h"
 
 #if OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER == 10  // its library has them: half the time to compile
 extern template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;

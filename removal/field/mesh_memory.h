@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/diagnostics.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 
 namespace camber::removal {
 

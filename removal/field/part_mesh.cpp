@@ -1,4 +1,4 @@
-#include "removal/part_mesh.h"
+#include "removal/form_error.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "base/diagnostics.h"
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 
 namespace camber::removal {
 namespace {

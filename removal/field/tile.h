@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "removal/tile_size.h"
+#include "removal/stock.h"
 
 namespace camber::removal {
 

@@ -1,5 +1,5 @@
 #include "base/cancel.h"
-#include "base/freed_memory.h"
+#include "base/process_memory.h"
 #include "base/stage.h"
 #include "removal/form_error.h"
 

@@ -74,7 +74,7 @@ void TiltedMarks::lower(SurfacePoint& p, std::size_t point_number, std::size_t k
   const ToolPose& pose = stamps_.pose(k);
   if ((p.place_mm - pose.tip_mm).dot(pose.axis) > stamps_.deflections().edges_end_mm) return;
   if (!stamps_.envelope().shape.general) {
-    const tilted::Frame& frame = stamps_.frame(k);
+    const tilted::StampFrame& frame = stamps_.frame(k);
     queue_.add({point_number, k}, frame.in_tool(p.place_mm).cast<float>(),
                (frame.to_part.transpose() * p.normal).cast<float>(), p.error_mm, deflection);
     return;

@@ -27,7 +27,7 @@ class TiltedStamps {
 
   const EnvelopeGrid& envelope() const { return envelope_; }
   const DeflectionTable& deflections() const { return deflections_; }
-  const tilted::Frame& frame(std::size_t k) const { return frames_[k]; }
+  const tilted::StampFrame& frame(std::size_t k) const { return frames_[k]; }
   const ToolPose& pose(std::size_t k) const { return stamps_[k].pose; }
   const StampDeflection& deflection(std::size_t k) const { return bounds_[k]; }
   std::int32_t id(std::size_t k) const { return first_id_ + static_cast<std::int32_t>(k); }
@@ -41,7 +41,7 @@ class TiltedStamps {
   const DeflectionTable& deflections_;
   const std::vector<StampDeflection>& bounds_;
   std::int32_t first_id_;
-  std::vector<tilted::Frame> frames_;
+  std::vector<tilted::StampFrame> frames_;
 };
 
 /// Lowers points of the surface to the deepest of the stamps beside them. One thread.

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "adapt/adapt.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::adapt::tests {

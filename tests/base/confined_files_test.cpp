@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/confined_files.h"
+#include "base/folders.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber {

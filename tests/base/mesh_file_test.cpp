@@ -1,5 +1,5 @@
 // STEP files: read in builds with Open CASCADE, refused with a word on how to build it in others.
-#include "base/mesh_file.h"
+#include "base/triangle_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,6 @@
 #include <gtest/gtest.h>
 
 #include "base/diagnostics.h"
-#include "base/first_failure.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/free_memory.h"
+#include "base/process_memory.h"
 
 namespace camber {
 namespace {

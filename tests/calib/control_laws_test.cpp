@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "calib/fit_feed.h"
-#include "calib/fit_ramp.h"
+#include "calib/fit_acceleration.h"
+#include "calib/fit_feed_model.h"
 #include "feedmodel/axes.h"
 #include "tests/support/synthetic_control.h"
 

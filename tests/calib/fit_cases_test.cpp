@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "kinematics/control_options.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 
 namespace camber::calib {
 namespace {

@@ -1,4 +1,4 @@
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "base/units.h"
 #include "calib/feed_accuracy.h"
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/control_options.h"
 #include "kinematics/program_joints.h"

@@ -6,8 +6,8 @@
 
 #include "base/units.h"
 #include "calib/feed_accuracy.h"
-#include "calib/fit_feed.h"
-#include "calib/traced_acceleration.h"
+#include "calib/fit_acceleration.h"
+#include "calib/fit_feed_model.h"
 #include "kinematics/control_options.h"
 #include "kinematics/joint_map.h"
 #include "kinematics/machine_moves.h"

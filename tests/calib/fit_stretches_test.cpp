@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "tests/support/test_data.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "calib/fit_stretches.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "tests/support/synthetic_control.h"
 
 namespace camber::calib {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "calib/fit_feed.h"
-#include "calib/fit_smoothing.h"
+#include "calib/fit_acceleration.h"
+#include "calib/fit_feed_model.h"
 #include "feedmodel/axes.h"
 #include "tests/support/feed_runs.h"
 

@@ -1,5 +1,5 @@
 // Top speeds of axes: what a held speed says, and what it does not.
-#include "calib/top_speed.h"
+#include "calib/line_speeds.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "simulate/pieces.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"

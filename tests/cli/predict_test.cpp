@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geometry.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "base/units.h"
 #include "tests/support/csv_columns.h"
 #include "tests/support/run_camber.h"

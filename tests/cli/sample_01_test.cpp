@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "test_paths.h"

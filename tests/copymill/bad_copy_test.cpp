@@ -1,7 +1,7 @@
 // What is said of jobs and parts that copy milling cannot take.
 #include <gtest/gtest.h>
 
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 #include "tests/copymill/small_copy.h"
 
 namespace camber::copymill {

@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "copymill/standing.h"
-#include "copymill/underside.h"
-#include "machine/job.h"
+#include "machine/tool.h"
 
 namespace camber::copymill {
 namespace {

@@ -1,4 +1,4 @@
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 
 #include <algorithm>
 #include <cmath>

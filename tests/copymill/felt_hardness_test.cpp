@@ -1,4 +1,4 @@
-#include "copymill/felt_hardness.h"
+#include "copymill/load_rule.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "copymill/speed_ahead.h"
+#include "copymill/feed_motion.h"
 #include "simulate/load_probe.h"
 #include "tests/support/cutting.h"
 
@@ -23,7 +23,7 @@ LoadBand band_of(double limit, int teeth = 1) {
   return band;
 }
 
-constexpr Conditions kNominal{20, 4, 3};
+constexpr LoadConditions kNominal{20, 4, 3};
 
 /// A passing of this load where the feed is the nominal one; loads are proportional to the feed.
 void feel(LoadRule& rule, double load_at_nominal, double hardness = 1) {
@@ -126,7 +126,7 @@ TEST(LoadRule, DepthsRiseAgainInReverseWhereTheLoadAllows) {
   ASSERT_NEAR(rule.conditions().axial_mm, 2.4, 1e-9);
   std::vector<Quantity> rose;
   for (int k = 0; k < 100; ++k) {
-    const Conditions before = rule.conditions();
+    const LoadConditions before = rule.conditions();
     feel(rule, 70);
     if (rule.conditions().axial_mm > before.axial_mm) rose.push_back(Quantity::axial_depth);
     if (rule.conditions().radial_mm > before.radial_mm) rose.push_back(Quantity::radial_depth);
@@ -157,7 +157,7 @@ TEST(LoadRule, ALookAheadCountsWithTheHardnessThatIsFelt) {
 namespace {
 
 /// A straight cut along x whose tip is 2 mm under a block that is higher from x = 25 on.
-struct Cut {
+struct OperationCut {
   double height_after_mm = 0;  ///< of the block after the step, over the one before
   std::vector<simulate::ForceRegion> regions{};
   double limit_N = 0;
@@ -171,10 +171,10 @@ struct Cutting {
 
 constexpr double kEnd_mm = 55, kTick_s = 0.004, kAcceleration = 1000, kRpm = 6000;
 constexpr int kTeeth = 4;
-constexpr Conditions kFeeds{24, 3, 2};
+constexpr LoadConditions kFeeds{24, 3, 2};
 
 /// The loop of a control that makes its path while it cuts: looks, motion of a tick, passings, rule.
-Cutting run(const Cut& how, bool follows) {
+Cutting run(const OperationCut& how, bool follows) {
   const Vec3 lo(0, -6, -6);
   const auto distance = [&](const Vec3& p) {
     return std::min(removal::box_distance_mm(p, lo, {60, 6, 0}),
@@ -240,7 +240,7 @@ double in_band(const Cutting& c, double from, double to) {
 }  // namespace
 
 TEST(LoadRuleOnCuts, AStepOfTheStockIsMetWithinTheLimit) {
-  Cut how{2.0, {}, 1};
+  OperationCut how{2.0, {}, 1};
   const Cutting known = run(how, false);  // in newtons, at the nominal feed
   how.limit_N = 0.85 * peak(known);
   const Cutting constant = run(how, false), follows = run(how, true);
@@ -254,7 +254,7 @@ TEST(LoadRuleOnCuts, AStepOfTheStockIsMetWithinTheLimit) {
 }
 
 TEST(LoadRuleOnCuts, APartThatIsHarderThanAnyoneKnowsKeepsTheLimitByWhatIsFelt) {
-  Cut how{0.0, {}, 1};
+  OperationCut how{0.0, {}, 1};
   const Cutting known = run(how, false);
   how.limit_N = 1.1 * peak(known);
   how.regions = {{{20, -100, -100}, {38, 100, 100}, 1.4}};

@@ -1,4 +1,4 @@
-#include "copymill/loop_order.h"
+#include "copymill/levels.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "copymill/motion.h"
+#include "copymill/feed_motion.h"
 
 #include <cmath>
 
@@ -35,8 +35,8 @@ double away_from(const std::vector<PathPiece>& pieces, const Vec3& p) {
   return out;
 }
 
-TEST(Motion, KeepsAccelerationsOfTheAxesAndStaysOnThePath) {
-  Motion motion(machine_with(600));
+TEST(FeedMotion, KeepsAccelerationsOfTheAxesAndStaysOnThePath) {
+  FeedMotion motion(machine_with(600));
   motion.place({0, 0, 0});
   motion.start(path(), false);
   Vec3 before = motion.tip(), speed = Vec3::Zero();
@@ -52,13 +52,13 @@ TEST(Motion, KeepsAccelerationsOfTheAxesAndStaysOnThePath) {
   EXPECT_LT(ticks, 20000);
   EXPECT_LT(worst, 600 * 1.001);
   EXPECT_GT(worst, 200);
-  EXPECT_LT(off, Motion::kSmoothing_mm + 0.0006);  // half a step of the measurement
+  EXPECT_LT(off, FeedMotion::kSmoothing_mm + 0.0006);  // half a step of the measurement
   EXPECT_NEAR((motion.tip() - Vec3(5, 8, 3)).norm(), 0, 1e-9);
 }
 
-TEST(Motion, StopsAtAnyTickWithinTheLimitsAndOnThePath) {
+TEST(FeedMotion, StopsAtAnyTickWithinTheLimitsAndOnThePath) {
   for (const int stop : {50, 300, 333, 700, 901, 1400}) {
-    Motion motion(machine_with(600));
+    FeedMotion motion(machine_with(600));
     motion.place({0, 0, 0});
     motion.start(path(), false);
     Vec3 before = motion.tip(), speed = Vec3::Zero();
@@ -71,14 +71,14 @@ TEST(Motion, StopsAtAnyTickWithinTheLimitsAndOnThePath) {
       before = motion.tip(), speed = now;
     }
     EXPECT_LT(worst, 600 * 1.001) << stop;
-    EXPECT_LT(away_from(path(), motion.tip()), Motion::kSmoothing_mm + 0.0006) << stop;
+    EXPECT_LT(away_from(path(), motion.tip()), FeedMotion::kSmoothing_mm + 0.0006) << stop;
     // From 40 mm/s at half of 600 mm/s^2: 133 ms and the average.
     EXPECT_LT(ticks - stop, 150) << stop;
   }
 }
 
-TEST(Motion, KeepsAFurtherLimitAhead) {
-  Motion motion(machine_with(600));
+TEST(FeedMotion, KeepsAFurtherLimitAhead) {
+  FeedMotion motion(machine_with(600));
   motion.place({0, 0, 0});
   motion.start({line_piece({0, 0, 0}, {50, 0, 0})}, false);
   while (motion.along_piece_mm() < 25 && motion.piece() == 0) motion.tick(40, {25 - motion.along_piece_mm(), 5});

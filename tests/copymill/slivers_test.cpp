@@ -1,7 +1,7 @@
 // What is narrower than the planner's cells: nothing of it may be left along walls, and no rapid may run into it.
 #include <gtest/gtest.h>
 
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 #include "tests/copymill/small_copy.h"
 #include "tests/support/block_part.h"
 #include "tests/support/height_map_judge.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 #include "copymill/trochoid.h"
 #include "tests/copymill/small_copy.h"
 #include "tests/support/height_map_judge.h"

@@ -2,8 +2,8 @@
 // A copy job on one of the sample's parts.
 #include <string>
 
-#include "copymill/copy.h"
-#include "machine/unprogrammed_job.h"
+#include "copymill/copy_milling.h"
+#include "machine/job_file.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "copymill/copy.h"
+#include "copymill/copy_milling.h"
 #include "tests/copymill/small_copy.h"
 
 namespace camber::copymill {

@@ -1,5 +1,5 @@
 // Modes of beams against tests/data/dynamics/beam_modes.csv.
-#include "dynamics/beam_modes.h"
+#include "dynamics/tool_modes.h"
 
 #include <fstream>
 

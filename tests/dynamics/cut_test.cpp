@@ -1,4 +1,4 @@
-#include "dynamics/cut.h"
+#include "dynamics/vibrating_cut.h"
 
 #include <gtest/gtest.h>
 

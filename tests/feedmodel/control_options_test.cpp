@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "feedmodel/merge.h"
+#include "feedmodel/corner.h"
 #include "feedmodel/path_builder.h"
 #include "tests/support/test_program.h"
 

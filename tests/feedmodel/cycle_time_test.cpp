@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "feedmodel/rapid.h"
-#include "feedmodel/spindle_start.h"
+#include "feedmodel/rests.h"
 #include "tests/support/nc_program.h"
 #include "tests/support/test_program.h"
 

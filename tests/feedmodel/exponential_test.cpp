@@ -1,4 +1,4 @@
-#include "feedmodel/exponential.h"
+#include "feedmodel/segment_motion.h"
 
 #include <gtest/gtest.h>
 

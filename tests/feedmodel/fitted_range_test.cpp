@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "tests/support/test_program.h"
 
 namespace camber::feedmodel {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/units.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/joint_map.h"
 #include "kinematics/program_joints.h"

@@ -3,11 +3,9 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "feedmodel/axis_filter.h"
 #include "feedmodel/corner.h"
+#include "feedmodel/drive.h"
 #include "feedmodel/limits.h"
-#include "feedmodel/merge.h"
-#include "feedmodel/position_loop.h"
 #include "tests/support/test_program.h"
 
 namespace camber::feedmodel {

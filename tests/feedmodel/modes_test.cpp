@@ -8,7 +8,7 @@
 
 #include "feedmodel/cycle_time.h"
 #include "feedmodel/fitted_range.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "feedmodel/timed_path.h"
 #include "feedmodel/yan_shirase.h"
 #include "test_paths.h"

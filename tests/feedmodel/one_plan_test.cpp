@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "feedmodel/cycle_time.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "feedmodel/rapid.h"
 #include "feedmodel/timed_path.h"
 #include "tests/support/nc_program.h"

@@ -1,4 +1,4 @@
-#include "feedmodel/profile.h"
+#include "feedmodel/segment_motion.h"
 
 #include <gtest/gtest.h>
 

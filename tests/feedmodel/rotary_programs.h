@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/units.h"
-#include "feedmodel/plan.h"
+#include "feedmodel/motion_plan.h"
 #include "kinematics/control_options.h"
 #include "kinematics/joint_map.h"
 #include "kinematics/machine_moves.h"

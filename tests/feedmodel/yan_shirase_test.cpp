@@ -8,10 +8,9 @@
 
 #include "base/units.h"
 #include "feedmodel/cycle_time.h"
-#include "feedmodel/exponential.h"
 #include "feedmodel/limits.h"
 #include "feedmodel/lookahead.h"
-#include "feedmodel/profile.h"
+#include "feedmodel/segment_motion.h"
 #include "tests/support/test_program.h"
 
 namespace camber::feedmodel {

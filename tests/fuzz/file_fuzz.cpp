@@ -14,8 +14,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/mesh_file.h"
-#include "base/stl.h"
+#include "base/triangle_mesh.h"
 #include "calib/column_map.h"
 #include "calib/feed_accuracy.h"
 #include "calib/force_signal.h"
@@ -24,15 +23,13 @@
 #include "compensate/measured.h"
 #include "compensate/uncertainty.h"
 #include "dynamics/frequency_response.h"
-#include "machine/cases.h"
 #include "machine/copy_operations.h"
+#include "machine/cycle_cases.h"
 #include "machine/force_log.h"
-#include "machine/job.h"
-#include "machine/job_programs.h"
+#include "machine/job_file.h"
 #include "machine/measured_table.h"
-#include "machine/study.h"
+#include "machine/study_file.h"
 #include "machine/tool_proposal.h"
-#include "machine/unprogrammed_job.h"
 #include "simulate/force_regions.h"
 
 namespace {

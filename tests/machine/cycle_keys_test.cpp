@@ -1,7 +1,7 @@
 // Inputs of cycle time: machine.toml, what-if by key, cases.
 #include <gtest/gtest.h>
 
-#include "machine/cases.h"
+#include "machine/cycle_cases.h"
 #include "machine/set_number.h"
 #include "tests/support/temp_folder.h"
 

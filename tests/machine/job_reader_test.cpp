@@ -1,4 +1,4 @@
-#include "machine/job.h"
+#include "machine/job_file.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "machine/material_presets.h"
 #include "machine/material_reader.h"
 #include "tests/support/temp_folder.h"

@@ -1,7 +1,7 @@
 // What CAM systems write of tools and blanks into the comments of a program.
 #include <gtest/gtest.h>
 
-#include "machine/stock_comments.h"
+#include "machine/program_comments.h"
 #include "machine/tool_proposal.h"
 
 namespace camber::machine {

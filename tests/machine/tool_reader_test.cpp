@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::machine {

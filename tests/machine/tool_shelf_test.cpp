@@ -1,7 +1,7 @@
 // Tools that are kept once: `tools` and `from` in a job.
 #include <gtest/gtest.h>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::machine {

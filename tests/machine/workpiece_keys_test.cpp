@@ -1,7 +1,7 @@
 // [workpiece] of job.toml.
 #include <gtest/gtest.h>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::machine {

@@ -73,7 +73,7 @@ std::map<int, judge::Cutter> cutters_of(const PlanInput& input) {
 /// The least diameter that mills a primitive; 0: none does.
 int smallest_mill(const PlanInput& input, const PlannedDivision& plan, std::size_t primitive) {
   int out = 0;
-  for (const Operation& o : plan.operations)
+  for (const PlanOperation& o : plan.operations)
     if (o.primitive == primitive && o.pattern != Pattern::drilling &&
         (out == 0 || input.tools.at(o.tool).tool.diameter_mm < input.tools.at(out).tool.diameter_mm))
       out = o.tool;
@@ -110,7 +110,7 @@ TEST_P(CarvedParts, AreThePartWhereToolsReach) {
   EXPECT_EQ(whole.rapid.depth, 0) << "line " << whole.rapid.line;
   EXPECT_EQ(whole.shank.depth, 0) << "line " << whole.shank.line;
   for (std::size_t i = 0; i < plan.order.steps.size(); ++i) {
-    const Primitive& p = plan.primitives[plan.order.steps[i].primitive];
+    const VolumePrimitive& p = plan.primitives[plan.order.steps[i].primitive];
     const int tool = p.is_hole ? 0 : smallest_mill(input, plan, i + 1);
     if (tool == 0) continue;
     judge::Verdict v;

@@ -1,4 +1,4 @@
-#include "plan/cases.h"
+#include "plan/case_base.h"
 
 #include <gtest/gtest.h>
 

@@ -38,7 +38,7 @@ PlanProgram step_program(const tests::TempFolder& folder, bool compensate, std::
   input.compensate = compensate;
   const PlanResult result = make_plan(input, diagnostics);
   const PlannedDivision& plan = result.setups.at(0).plans.at(result.setups.at(0).best);
-  finish = static_cast<std::size_t>(std::ranges::find(plan.operations, OperationKind::finish, &Operation::kind) -
+  finish = static_cast<std::size_t>(std::ranges::find(plan.operations, OperationKind::finish, &PlanOperation::kind) -
                                     plan.operations.begin());
   EXPECT_EQ(finish, plan.operations.size() - 1);
   return make_program(input, copy_job(input, input.part_path, ""), plan, "program.nc", diagnostics);

@@ -99,7 +99,7 @@ TEST(JoinedRuns, LeaveApartWhatWallsDivide) {
                              .holes = {}},
                             box(0, 0, 0, 120, 60, 20));
   ASSERT_GE(p.best().operations.size(), 4U);
-  for (const Operation& o : p.best().operations) EXPECT_FALSE(o.joined);
+  for (const PlanOperation& o : p.best().operations) EXPECT_FALSE(o.joined);
 }
 
 /// Under a face of one level lies a small shallow step: together two even levels would be cut, the first one over the
@@ -109,7 +109,7 @@ TEST(JoinedRuns, LeaveApartWhatTakesLongerTogether) {
   const Planned p =
       planned(folder, {.block = box(0, 0, 0, 120, 100, 25.4), .pockets = {box(90, -1, 24.4, 121, 30, 27)}, .holes = {}},
               box(0, 0, 0, 120, 100, 30));
-  for (const Operation& o : p.best().operations)
+  for (const PlanOperation& o : p.best().operations)
     EXPECT_FALSE(o.kind == OperationKind::rough && o.joined) << o.primitive;
 }
 
@@ -122,7 +122,7 @@ TEST(JoinedRuns, KeepWhatMustComeFirst) {
     Planned p = planned(folder, made.part, made.blank);
     for (const PlannedDivision& plan : p.setup().plans) {
       const auto& ops = plan.operations;
-      const auto primitive = [&](const Operation& o) -> const Primitive& {
+      const auto primitive = [&](const PlanOperation& o) -> const VolumePrimitive& {
         return plan.primitives[plan.order.steps[o.primitive - 1].primitive];
       };
       for (std::size_t i = 0; i < ops.size(); ++i) {
@@ -133,7 +133,7 @@ TEST(JoinedRuns, KeepWhatMustComeFirst) {
           EXPECT_EQ(ops[i].conditions.axial_mm, ops[i - 1].conditions.axial_mm) << seed;
         }
         for (std::size_t k = 0; k < i; ++k) {
-          const Primitive &before = primitive(ops[k]), &after = primitive(ops[i]);
+          const VolumePrimitive &before = primitive(ops[k]), &after = primitive(ops[i]);
           if (before.is_hole || after.is_hole) {
             EXPECT_TRUE(after.is_hole || !before.is_hole) << seed << ": a hole before a box";
             continue;

@@ -2,7 +2,7 @@
 // the demonstration part.
 #include <gtest/gtest.h>
 
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 #include "test_paths.h"
 #include "tests/support/block_part.h"
 
@@ -35,7 +35,7 @@ Planned planned(const RemovalVolume& removal) {
     EXPECT_TRUE(plan.complete());
     EXPECT_EQ(plan.order.steps.size(), 1U);
     Planned now{.feature = plan.order.steps.at(0).feature};
-    for (const Operation& o : plan.operations) {
+    for (const PlanOperation& o : plan.operations) {
       now.tools.push_back(o.tool);
       now.patterns.push_back(o.pattern);
       for (const std::string& note : o.notes)
@@ -95,7 +95,7 @@ TEST(OneFeature, HolesHaveCentreDrillAndDrill) {
   expect(planned(tests::BlockHole{100, 75, 10, 6}), Feature::blind_hole, {7, 8}, Pattern::drilling);
 }
 TEST(OneFeature, FreeFormHasTheLargestBallEndMill) {
-  Solid part = solid_of(box(0, 0, 0, 60, 40, 20));  // a wedge
+  TriangleSolid part = solid_of(box(0, 0, 0, 60, 40, 20));  // a wedge
   for (Vec3& p : part.points)
     if (p.z() > 10 && p.x() > 30) p.z() = 17;
   const Planned is = planned(removal_volume({.blank = solid_of(box(0, 0, 0, 60, 40, 20)), .part = part}));
@@ -112,7 +112,7 @@ TEST(DemonstrationPart, HasThePublishedFeaturesToolsAndOrder) {
   for (const PlannedDivision& plan : setup.plans) {
     EXPECT_TRUE(plan.complete());
     std::vector<std::pair<std::string_view, int>> is;
-    for (const Operation& o : plan.operations) is.emplace_back(to_string(o.feature), o.tool);
+    for (const PlanOperation& o : plan.operations) is.emplace_back(to_string(o.feature), o.tool);
     const std::vector<std::pair<std::string_view, int>> wanted{
         {"face", 6},        {"closed pocket", 2}, {"open pocket", 3},  {"closed pocket", 1},
         {"closed slot", 2}, {"closed slot", 2},   {"closed slot", 1},  {"closed slot", 1},

@@ -1,11 +1,11 @@
-#include "plan/operations.h"
+#include "plan/planned_operations.h"
 
 #include <map>
 
 #include <gtest/gtest.h>
 
-#include "plan/plan.h"
 #include "plan/plan_table.h"
+#include "plan/setup_plan.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
 
@@ -146,9 +146,9 @@ TEST(BestPlan, IsThePublishedChoice) {
 }
 
 TEST(TotalTime, IsTheSumAndTheToolChanges) {
-  std::vector<Operation> operations;
+  std::vector<PlanOperation> operations;
   for (const int tool : {6, 2, 3, 2, 2, 1, 1, 5, 7, 8}) {
-    Operation o;
+    PlanOperation o;
     o.tool = tool;
     o.nominal_time_s = 100;
     operations.push_back(o);
@@ -192,7 +192,7 @@ TEST_F(SamplePlan, HasTheFeaturesAndToolsOfItsPart) {
     EXPECT_GE(features[Feature::closed_slot], 4);
     EXPECT_EQ(p.order.steps.front().feature, Feature::face);
     EXPECT_EQ(p.order.steps.back().feature, Feature::through_hole);
-    for (const Operation& o : p.operations) {
+    for (const PlanOperation& o : p.operations) {
       const std::map<Feature, int> tools{
           {Feature::face, 6}, {Feature::closed_pocket, 2}, {Feature::open_pocket, 3}, {Feature::free_form, 5}};
       if (const auto rule = tools.find(o.feature); rule != tools.end()) {
@@ -205,7 +205,7 @@ TEST_F(SamplePlan, HasTheFeaturesAndToolsOfItsPart) {
 
 TEST_F(SamplePlan, KeepsItsLimits) {
   for (const PlannedDivision& p : result->setups.at(0).plans)
-    for (const Operation& o : p.operations) {
+    for (const PlanOperation& o : p.operations) {
       EXPECT_LE(o.conditions.loads.form_error_mm, 0.060 * 1.001) << o.tool;
       EXPECT_LE(o.conditions.spindle_rpm, 8000);
       EXPECT_FALSE(o.conditions.limit.empty());

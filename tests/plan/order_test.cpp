@@ -12,13 +12,13 @@ using tests::box;
 
 struct Ordered {
   RemovalVolume removal;
-  std::vector<Primitive> primitives;
+  std::vector<VolumePrimitive> primitives;
   Order order;
   Ordered(const BlockPart& part, const machine::Box& blank, DivisionPlan plan = DivisionPlan::largest)
       : removal(removal_volume({.blank = solid_of(blank), .part = solid_of(part.mesh())})),
         primitives(divide(removal, plan)),
         order(put_in_order(removal, primitives)) {}
-  const Primitive& of(std::size_t i) const { return primitives[order.steps[i].primitive]; }
+  const VolumePrimitive& of(std::size_t i) const { return primitives[order.steps[i].primitive]; }
 };
 
 // Each rule decides where those before it are tied.
@@ -80,7 +80,7 @@ TEST(Order, FixturesBlockWhatIsUnderThem) {
   const RemovalVolume removal = removal_volume({.blank = solid_of(box(0, 0, 0, 60, 40, 25)),
                                                 .part = solid_of(part.mesh()),
                                                 .fixtures = {solid_of(box(-5, 10, 25, 10, 30, 30))}});
-  const std::vector<Primitive> primitives = divide(removal, DivisionPlan::largest);
+  const std::vector<VolumePrimitive> primitives = divide(removal, DivisionPlan::largest);
   const Order order = put_in_order(removal, primitives);
   ASSERT_FALSE(order.unreachable.empty());
   EXPECT_EQ(order.unreachable[0].reason, "a fixture is above it");
@@ -115,7 +115,7 @@ TEST(Features, OfHoles) {
 
 TEST(Features, OfAFreeFormFace) {
   // A wedge: two triangles of the top go down along x.
-  Solid part = solid_of(box(0, 0, 0, 60, 40, 20));
+  TriangleSolid part = solid_of(box(0, 0, 0, 60, 40, 20));
   for (Vec3& p : part.points)
     if (p.z() > 10 && p.x() > 30) p.z() = 12;
   const RemovalVolume removal = removal_volume({.blank = solid_of(box(0, 0, 0, 60, 40, 20)), .part = part});
@@ -126,10 +126,10 @@ TEST(Features, OfAFreeFormFace) {
   EXPECT_EQ(put_in_order(removal, primitives).steps.at(0).feature, Feature::free_form);
 }
 
-TEST(Workpiece, TellsWhatStandsNearAndHasRoom) {
+TEST(MachinedSpace, TellsWhatStandsNearAndHasRoom) {
   const BlockPart part{box(0, 0, 0, 60, 40, 20), {box(10, 10, 12, 40, 30, 20)}, {}};
   const Ordered o(part, part.block);
-  const Workpiece work(o.removal, o.primitives);
+  const MachinedSpace work(o.removal, o.primitives);
   EXPECT_NEAR(work.highest_near_mm(0, 5), 20, 1e-4);
   const OpenFaces open = work.open_faces(0);
   EXPECT_TRUE(work.has_room(0, open, 5));

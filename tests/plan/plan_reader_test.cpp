@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "plan/plan.h"
+#include "plan/setup_plan.h"
 #include "test_paths.h"
 #include "tests/support/block_part.h"
 #include "tests/support/temp_folder.h"

@@ -17,7 +17,7 @@ unsigned part_count() {
   return given ? static_cast<unsigned>(std::atoi(given)) : kParts;
 }
 
-bool holds(const RemovalVolume& removal, const Primitive& p, const Vec3& at) {
+bool holds(const RemovalVolume& removal, const VolumePrimitive& p, const Vec3& at) {
   if (!((at.array() > p.min_mm.array()).all() && (at.array() < p.max_mm.array()).all())) return false;
   if (!p.is_hole) return true;
   const Hole& h = removal.holes[p.hole];
@@ -48,7 +48,7 @@ class RandomParts : public ::testing::TestWithParam<unsigned> {
   }
 
   tests::RandomPart made;
-  Solid part;
+  TriangleSolid part;
   RemovalVolume removal;
   std::mt19937 random{GetParam()};
 };
@@ -63,13 +63,13 @@ TEST_P(RandomParts, AreAddedUpByPrimitivesWithoutOverlap) {
     const auto primitives = divide(removal, division);
     counts[division] = primitives.size();
     double sum = 0;
-    for (const Primitive& p : primitives) sum += p.volume_mm3;
+    for (const VolumePrimitive& p : primitives) sum += p.volume_mm3;
     EXPECT_NEAR(sum, wanted, 1e-3 * wanted);
     for (int i = 0; i < 600; ++i) {
       const Vec3 at = anywhere();
       if (at_a_hole(removal, at)) continue;
       int in = 0;
-      for (const Primitive& p : primitives) in += holds(removal, p, at);
+      for (const VolumePrimitive& p : primitives) in += holds(removal, p, at);
       EXPECT_EQ(in, contains(part, at) ? 0 : 1) << to_string(division) << " " << at.transpose();
     }
   }
@@ -86,7 +86,7 @@ TEST_P(RandomParts, AreOrderedSoThatEveryStepIsOpenFromAbove) {
     bool hole_before = false;
     std::vector<bool> gone(primitives.size(), false);
     for (const Step& step : order.steps) {
-      const Primitive& p = primitives[step.primitive];
+      const VolumePrimitive& p = primitives[step.primitive];
       EXPECT_TRUE(step.open.top);
       EXPECT_TRUE(p.is_hole || !hole_before);
       hole_before = hole_before || p.is_hole;

@@ -18,13 +18,13 @@ RemovalVolume removal_of(const BlockPart& part, const machine::Box& blank) {
   return removal_volume({.blank = solid_of(blank), .part = solid_of(part.mesh()), .fixtures = {}, .faces = {}});
 }
 
-TEST(Solid, HasTheVolumeOfItsCells) {
+TEST(TriangleSolid, HasTheVolumeOfItsCells) {
   const BlockPart part{box(0, 0, 0, 60, 40, 20), {box(10, 10, 12, 30, 30, 20)}, {{45, 20, 10, 0}}};
   ASSERT_TRUE(part.mesh().closed());
   EXPECT_NEAR(volume_mm3(solid_of(part.mesh())), part.volume_mm3(), 0.02);
 }
 
-TEST(Solid, TellsWhereMaterialIsAlongALine) {
+TEST(TriangleSolid, TellsWhereMaterialIsAlongALine) {
   const BlockPart part{box(0, 0, 0, 60, 40, 20), {box(10, -1, 5, 30, 41, 12)}, {}};
   const auto z = material_along_z(solid_of(part.mesh()), 20, 20);
   ASSERT_EQ(z.size(), 4U);
@@ -34,10 +34,10 @@ TEST(Solid, TellsWhereMaterialIsAlongALine) {
   EXPECT_FALSE(contains(solid_of(part.mesh()), {20, 20, 8}));
 }
 
-TEST(Solid, TellsWhereMaterialIsBesideAnUprightFacet) {
+TEST(TriangleSolid, TellsWhereMaterialIsBesideAnUprightFacet) {
   // A micrometre outside the chord of a hole's facet, which rounding leaves an area as seen from above.
   const BlockPart part{box(0, 0, 0, 90.5, 65.5, 31.5), {}, {{46, 55.5, 10, 2}}};
-  const Solid solid = solid_of(part.mesh());
+  const TriangleSolid solid = solid_of(part.mesh());
   for (const double x : {43.490262187744143, 43.490262188, 43.4903})
     for (int i = 0; i < 200; ++i) {
       const auto z = material_along_z(solid, x - 1e-5 * i, 51.174874222457255);
@@ -92,18 +92,18 @@ TEST(RemovalVolume, LeavesOutHolesThatTheBlankHas) {
 /// Points at random: in the removal volume where the blank has them and the part has not, and then in one primitive.
 void expect_disjoint_union(const BlockPart& part, const machine::Box& blank, int points, unsigned seed) {
   const RemovalVolume removal = removal_of(part, blank);
-  const Solid solid = solid_of(part.mesh());
+  const TriangleSolid solid = solid_of(part.mesh());
   std::mt19937 random(seed);
   for (const DivisionPlan plan : kDivisionPlans) {
-    const std::vector<Primitive> primitives = divide(removal, plan);
+    const std::vector<VolumePrimitive> primitives = divide(removal, plan);
     double sum = 0;
-    for (const Primitive& p : primitives) sum += p.volume_mm3;
+    for (const VolumePrimitive& p : primitives) sum += p.volume_mm3;
     EXPECT_NEAR(sum, removal.removal_mm3(), 1e-3 * removal.removal_mm3());
     for (int i = 0; i < points; ++i) {
       Vec3 at;
       for (int a = 0; a < 3; ++a) at[a] = std::uniform_real_distribution(blank.min_mm[a], blank.max_mm[a])(random);
       int in = 0;
-      for (const Primitive& p : primitives) {
+      for (const VolumePrimitive& p : primitives) {
         const bool within = (at.array() > p.min_mm.array()).all() && (at.array() < p.max_mm.array()).all();
         if (!within) continue;
         if (p.is_hole) {

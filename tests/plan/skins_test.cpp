@@ -14,10 +14,10 @@ namespace {
 using Height = std::function<double(double x, double y)>;
 
 /// A block from z = 0 up to a surface, which has facets `step` mm wide.
-Solid block_under(double length_mm, double width_mm, double step_mm, const Height& height) {
+TriangleSolid block_under(double length_mm, double width_mm, double step_mm, const Height& height) {
   const auto nx = static_cast<std::uint32_t>(std::lround(length_mm / step_mm)),
              ny = static_cast<std::uint32_t>(std::lround(width_mm / step_mm));
-  Solid out;
+  TriangleSolid out;
   const auto number = [&](std::uint32_t i, std::uint32_t j, bool top) {
     return 2 * (i * (ny + 1) + j) + (top ? 1 : 0);
   };
@@ -85,7 +85,7 @@ TEST(Skins, AreOneFreeFormVolumeThatIsReachedFromAbove) {
     EXPECT_NEAR(removal.removal_mm3(), volume, 1e-6 * volume);
     EXPECT_LT(std::abs(removal.balance()), 1e-3);
     for (const DivisionPlan plan : kDivisionPlans) {
-      const std::vector<Primitive> primitives = divide(removal, plan);
+      const std::vector<VolumePrimitive> primitives = divide(removal, plan);
       ASSERT_EQ(primitives.size(), 1U);
       EXPECT_TRUE(primitives[0].free_form);
       EXPECT_FALSE(primitives[0].overhang);
@@ -100,7 +100,7 @@ TEST(Skins, UnderABoxOfMaterialLeaveTheBoxToRoughing) {
   const RemovalVolume removal =
       removal_volume({.blank = solid_of(machine::Box{{0, 0, 0}, {60, 40, 30}}), .part = block_under(60, 40, 20, ramp)});
   EXPECT_LT(std::abs(removal.balance()), 1e-3);
-  const std::vector<Primitive> primitives = divide(removal, DivisionPlan::largest);
+  const std::vector<VolumePrimitive> primitives = divide(removal, DivisionPlan::largest);
   ASSERT_EQ(primitives.size(), 2U);
   EXPECT_NE(primitives[0].free_form, primitives[1].free_form);
   EXPECT_TRUE(put_in_order(removal, primitives).unreachable.empty());

@@ -5,7 +5,6 @@
 
 #include "plan/layered_solid.h"
 #include "plan/order.h"
-#include "plan/polygon_triangles.h"
 #include "plan/room.h"
 #include "tests/support/block_part.h"
 
@@ -48,14 +47,14 @@ double area_of(const Loop& loop) {
   return sum;
 }
 
-bool closed(const Solid& solid) {
+bool closed(const TriangleSolid& solid) {
   TriangleMesh mesh;
   for (const Vec3& p : solid.points) mesh.points.push_back(p.cast<float>());
   mesh.triangles = solid.triangles;
   return mesh.closed();
 }
 
-RemovalVolume removal_of(const Solid& part, const machine::Box& blank, double narrowest_mm) {
+RemovalVolume removal_of(const TriangleSolid& part, const machine::Box& blank, double narrowest_mm) {
   return removal_volume({.blank = solid_of(blank), .part = part, .narrowest_mm = narrowest_mm});
 }
 
@@ -72,13 +71,13 @@ TEST(PolygonTriangles, FillARegionWithHolesAndIslands) {
     sum += area;
   }
   EXPECT_NEAR(sum, wanted, 1e-6);
-  Solid solid;
+  TriangleSolid solid;
   add_layer(solid, loops, -1, 2);
   EXPECT_TRUE(closed(solid));
   EXPECT_NEAR(volume_mm3(solid), 3 * wanted, 1e-6);
   const Loop ring = turned_round(circle(50, 10, 2, 12));
   for (const double bottom : {1.5, -1.0}) {
-    Solid drilled;
+    TriangleSolid drilled;
     add_layer(drilled, loops, -1, 2, {{ring, bottom}});
     EXPECT_TRUE(closed(drilled));
     EXPECT_NEAR(volume_mm3(drilled), 3 * wanted + area_of(ring) * (2 - bottom), 1e-6);
@@ -110,7 +109,7 @@ TEST(PolygonTriangles, FillStarsAtRandom) {
 }
 
 TEST(Room, LeavesTheCornersOfASquareToARoundCutter) {
-  Solid stays;
+  TriangleSolid stays;
   add_layer(stays, {rectangle(0, 0, 60, 60), turned_round(rectangle(10, 10, 50, 50))}, 0, 10);
   const auto inside = [](double x, double y) { return x > 10 && x < 50 && y > 10 && y < 50; };
   for (const double r : {3.0, 8.0, 15.0}) {
@@ -123,7 +122,7 @@ TEST(Room, LeavesTheCornersOfASquareToARoundCutter) {
 
 TEST(Primitives, OfAPocketWithRoundedCornersAreOne) {
   for (const int facets : {2, 4, 9}) {
-    Solid part;
+    TriangleSolid part;
     const Loop pocket = rounded(20, 15, 80, 45, 4, facets);
     add_layer(part, {rectangle(0, 0, 100, 60)}, 0, 10);
     add_layer(part, {rectangle(0, 0, 100, 60), turned_round(pocket)}, 10, 20);
@@ -142,7 +141,7 @@ TEST(Primitives, OfAPocketWithRoundedCornersAreOne) {
 }
 
 TEST(Primitives, OfAnObroundSlotAreOne) {
-  Solid part;
+  TriangleSolid part;
   const Loop slot = rounded(20, 25, 80, 37, 6, 8);
   add_layer(part, {rectangle(0, 0, 100, 60)}, 0, 10);
   add_layer(part, {rectangle(0, 0, 100, 60), turned_round(slot)}, 10, 20);
@@ -156,7 +155,7 @@ TEST(Primitives, TakeSliversBesideThemWithThem) {
   // Half a millimetre beside a pocket, as long as half of its side and a little more.
   const tests::BlockPart part{
       box(0, 0, 0, 100, 60, 20), {box(20, 10, 10, 80, 50, 20), box(80, 10, 10, 80.5, 32, 20)}, {}};
-  const Solid solid = solid_of(part.mesh());
+  const TriangleSolid solid = solid_of(part.mesh());
   for (const DivisionPlan plan : {DivisionPlan::yz, DivisionPlan::largest}) {
     EXPECT_EQ(divide(removal_of(solid, part.block, 0), plan).size(), 2U);
     const RemovalVolume removal = removal_of(solid, part.block, 3);
@@ -181,12 +180,12 @@ TEST(Primitives, TakeAThinLayerToTheOneBelow) {
   const tests::BlockPart part{box(0, 0, 0, 100, 60, 20),
                               {box(10, 10, 12.1, 90, 50, 20), box(30, 10, 12, 60, 50, 20), box(30, 10, 8, 60, 50, 20)},
                               {}};
-  const Solid solid = solid_of(part.mesh());
+  const TriangleSolid solid = solid_of(part.mesh());
   EXPECT_EQ(divide(removal_of(solid, part.block, 0), DivisionPlan::largest).size(), 2U);
   const tests::BlockPart three{box(0, 0, 0, 100, 60, 20),
                                {box(10, 10, 12.1, 90, 50, 20), box(10, 10, 12, 60, 50, 20), box(30, 10, 8, 60, 50, 20)},
                                {}};
-  const Solid of_three = solid_of(three.mesh());
+  const TriangleSolid of_three = solid_of(three.mesh());
   EXPECT_EQ(divide(removal_of(of_three, three.block, 0), DivisionPlan::largest).size(), 3U);
   const RemovalVolume removal = removal_of(of_three, three.block, 6);
   auto primitives = divide(removal, DivisionPlan::largest);
@@ -195,13 +194,13 @@ TEST(Primitives, TakeAThinLayerToTheOneBelow) {
   EXPECT_NEAR(primitives[0].max_mm.z(), 12.1, 1e-6);
   EXPECT_NEAR(primitives[1].max_mm.x() - primitives[1].min_mm.x(), 20, 1e-6);
   double sum = 0;
-  for (const Primitive& p : primitives) sum += p.volume_mm3;
+  for (const VolumePrimitive& p : primitives) sum += p.volume_mm3;
   EXPECT_NEAR(sum, removal.removal_mm3(), 1e-3);
 }
 
 TEST(Primitives, RoundBossesDoNotCutALayerFromTheOneWithoutThem) {
   // A boss narrower than the mill has no planes of its own: the layer above it is still another primitive.
-  Solid part;
+  TriangleSolid part;
   add_layer(part, {rectangle(0, 0, 100, 60)}, 0, 10);
   add_layer(part, {circle(30, 30, 2.5, 32)}, 10, 14);
   const RemovalVolume removal = removal_of(part, box(0, 0, 0, 100, 60, 18), 6);

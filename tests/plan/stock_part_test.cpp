@@ -1,5 +1,5 @@
 // A stock as a part: layers between its floors, holes apart.
-#include "plan/stock_part.h"
+#include "plan/part_of_stock.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace camber::plan {
 namespace {
 
-TriangleMesh mesh_of(const Solid& solid) {
+TriangleMesh mesh_of(const TriangleSolid& solid) {
   TriangleMesh out;
   for (const Vec3& p : solid.points) out.points.push_back(p.cast<float>());
   out.triangles = solid.triangles;
@@ -17,7 +17,7 @@ TriangleMesh mesh_of(const Solid& solid) {
 }
 
 TEST(LayeredSolid, IsAClosedPrismOverARegionWithAHole) {
-  Solid solid;
+  TriangleSolid solid;
   // An L with a triangular hole; one side of the L is inclined.
   const std::vector<std::vector<Vec2>> loops{{{0, 0}, {30, 0}, {30, 10}, {12, 14}, {12, 25}, {0, 25}},
                                              {{2, 3}, {5, 8}, {8, 3}}};
@@ -33,7 +33,7 @@ TEST(LayeredSolid, IsAClosedPrismOverARegionWithAHole) {
 }
 
 TEST(LayeredSolid, StacksOfLayersAreClosedToo) {
-  Solid solid;
+  TriangleSolid solid;
   add_layer(solid, {{{0, 0}, {20, 0}, {20, 20}, {0, 20}}}, 0, 5);
   add_layer(solid, {{{4, 4}, {16, 5}, {15, 16}, {5, 15}}}, 5, 9);
   EXPECT_TRUE(mesh_of(solid).closed());
@@ -58,9 +58,9 @@ double carved_mm(const Vec3& p) {
   return std::max(d, -drilled(14, 31, 3.5, 30, -5));
 }
 
-TEST(StockPart, HasTheWallsFloorsAndHolesOfTheStock) {
+TEST(PartOfStock, HasTheWallsFloorsAndHolesOfTheStock) {
   const removal::Stock stock(carved_mm, {0, 0, 0}, {50, 40, 20}, 0.25, 3);
-  const StockPart part = part_of(stock, solid_of(machine::Box{{0, 0, 0}, {50, 40, 22}}).bounds(), {});
+  const PartOfStock part = part_of(stock, solid_of(machine::Box{{0, 0, 0}, {50, 40, 22}}).bounds(), {});
   ASSERT_EQ(part.holes.size(), 2U);
   EXPECT_NEAR(part.holes[0].centre_mm.y(), 12, 0.005);
   EXPECT_NEAR(part.holes[0].diameter_mm, 5, 0.02);
@@ -93,19 +93,19 @@ TEST(StockPart, HasTheWallsFloorsAndHolesOfTheStock) {
   EXPECT_EQ(features.back(), "through hole");
 }
 
-TEST(Workpiece, HasNoRoomBetweenWallsAndARoundIsland) {
+TEST(MachinedSpace, HasNoRoomBetweenWallsAndARoundIsland) {
   std::vector<Vec2> pocket{{10, 10}, {10, 50}, {50, 50}, {50, 10}}, island;
   for (int i = 0; i < 48; ++i)
     island.emplace_back(30 + 14 * std::cos(2 * kPi * i / 48), 30 + 14 * std::sin(2 * kPi * i / 48));
   const std::vector<Vec2> block{{0, 0}, {60, 0}, {60, 60}, {0, 60}};
-  Solid part;
+  TriangleSolid part;
   add_layer(part, {block}, 0, 5);
   add_layer(part, {block, pocket, island}, 5, 15);
   const RemovalVolume removal =
       removal_volume({.blank = solid_of(machine::Box{{0, 0, 0}, {60, 60, 15}}), .part = part});
   const auto primitives = divide(removal, DivisionPlan::largest);
   ASSERT_EQ(primitives.size(), 1U);
-  const Workpiece work(removal, primitives);
+  const MachinedSpace work(removal, primitives);
   // 6 mm are between them. A cutter of 12 mm gets into the corners only, one of 6 mm everywhere but into their ends.
   EXPECT_TRUE(work.has_room(0, work.open_faces(0), 2.9));
   EXPECT_FALSE(work.has_room(0, work.open_faces(0), 6));

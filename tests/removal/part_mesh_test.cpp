@@ -1,4 +1,4 @@
-#include "removal/part_mesh.h"
+#include "removal/form_error.h"
 
 #include <random>
 

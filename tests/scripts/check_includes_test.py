@@ -53,6 +53,9 @@ class CheckIncludes(unittest.TestCase):
         self.refuses("deflection/cut.cpp", '#include "removal/field/tiles.h"\n', "removal/field/tiles.h is private")
         self.refuses("tests/deflection/cut_test.cpp", '#include "removal/field/tiles.h"\n', "removal/field/tiles.h is private")
 
+    def test_refuses_more_beside_the_folders_of_removal(self):
+        self.refuses("removal/tiles.h", "#include <vector>\n", "removal/tiles.h:1: error: beside the folders of removal/")
+
     def test_refuses_headers_in_a_circle(self):
         status, printed = check({"nc/a.h": '#include "nc/b.h"\n', "nc/b.h": '#include "b2.h"\n', "nc/b2.h": '#include "nc/a.h"\n'})
         self.assertEqual(status, 1)

@@ -50,8 +50,8 @@ class Reference(unittest.TestCase):
         self.assert_missing("new_key", "machine/machine_reader.cpp")
 
     def test_a_new_key_of_the_job(self):
-        self.edit("machine/job_reader.cpp", '"allowance_mm"', '"thickness_mm"')
-        self.assert_missing("thickness_mm", "machine/job_reader.cpp")
+        self.edit("machine/job_file.cpp", '"allowance_mm"', '"thickness_mm"')
+        self.assert_missing("thickness_mm", "machine/job_file.cpp")
 
     def test_a_new_name_of_a_material(self):
         self.edit("machine/material_presets.cpp", "S45C S48C", "S45C S45CM S48C")

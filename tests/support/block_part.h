@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "base/stl.h"
-#include "machine/job.h"
+#include "base/triangle_mesh.h"
+#include "machine/workpiece.h"
 
 namespace camber::tests {
 

@@ -2,7 +2,7 @@
 // Straight rows of stamps and simple tools, for tests that need no program.
 #include <vector>
 
-#include "machine/job.h"
+#include "machine/tool.h"
 #include "removal/stock.h"
 #include "removal/tool_path.h"
 

@@ -2,7 +2,7 @@
 // The drawn cut (tests/support/displaced_envelope.h) of a job with one tool on a box.
 #include <cmath>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "tests/support/displaced_envelope.h"
 
 namespace camber::testing {

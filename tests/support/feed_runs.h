@@ -2,7 +2,7 @@
 // A machine that is known, figures that tell it, and the trace that it leaves.
 #include <cmath>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "feedmodel/timed_path.h"
 #include "tests/support/test_program.h"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
-#include "dynamics/cut.h"
+#include "dynamics/vibrating_cut.h"
 #include "tests/support/csv_columns.h"
 #include "tests/support/test_data.h"
 

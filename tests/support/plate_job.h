@@ -3,7 +3,7 @@
 // travel: what differs between two programs is then their geometry.
 #include <string>
 
-#include "machine/job.h"
+#include "machine/job_file.h"
 #include "tests/kinematics/machines.h"
 #include "tests/support/cutting.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "calib/fit_feed.h"
+#include "calib/fit_feed_model.h"
 #include "feedmodel/timed_path.h"
 #include "tests/support/random_motion.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "removal/engage/thinnest_chip.h"
 #include "removal/engage/upright/level_faces.h"
-#include "removal/field/upright/carve_general.h"
+#include "removal/field/cell.h"
+#include "removal/field/upright/carve.h"
 
 namespace camber::removal::tilted {
 
@@ -52,23 +52,22 @@ Vec3 vec(const CellShare& share) {
 
 }  // namespace
 
-ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
-                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm,
+ChipReader::ChipReader(const EngagedRun& run, const upright::PatchLanes& lanes, std::span<const Stamp> stamps,
                        const DeflectionTable& deflections, const upright::BendMemory& memory, const ReadingRule& rule)
-    : envelope_(envelope),
+    : envelope_(run.envelope),
       lanes_(lanes),
       view_(lanes.view()),
-      all_(all),
+      all_(run.stamps),
       stamps_(stamps),
-      first_id_(first_id),
-      voxel_mm_(voxel_mm),
+      first_id_(run.first_id),
+      voxel_mm_(run.stock.voxel_mm()),
       deflections_(deflections),
       memory_(memory),
       rule_(rule),
       kernels_(upright::kernels()),
       node_step_mm_(deflections.nodes() > 1 ? as_float(deflections.node_height_mm[1]) : 1.0f),
-      wall_half_mm_(upright::wall_half_widths_mm(envelope)) {
-  for (const auto& ring : envelope.rings)
+      wall_half_mm_(upright::wall_half_widths_mm(run.envelope)) {
+  for (const auto& ring : run.envelope.rings)
     max_curved_per_mm_ =
         std::max({max_curved_per_mm_, ring.profile.meridian_curvature_per_mm, ring.profile.parallel_curvature_per_mm});
 }
@@ -79,7 +78,7 @@ ChipReader::Reading ChipReader::reading_of(std::size_t k) const {
   const bool first = stamps_[k].first;
   return {k,
           from + k,
-          Frame(stamps_[k].pose),
+          StampFrame(stamps_[k].pose),
           motion_in_tool(all_, from + k),
           first ? 0 : deflections_.largest_lateral_mm(before),
           first ? 0 : deflections_.largest_axial_mm(before)};
@@ -231,7 +230,7 @@ bool ChipReader::place_in_ring(const TileArena& arena, const Reading& stamp, flo
   for (int c = 0; c < 8; ++c) {
     const std::int32_t id = ids[cell_corner(c)] - first_id_;
     if (id < 0) continue;
-    const Frame& left = other(id, b).frame;
+    const StampFrame& left = other(id, b).frame;
     if (left.axis().dot(axis) < 1 - kSquare * kSquare / 2) continue;
     Vec3 from_tip = left.in_tool(p.place_mm);
     from_tip.z() -= static_cast<double>(axial_mm);
@@ -247,7 +246,7 @@ bool ChipReader::place_in_ring(const TileArena& arena, const Reading& stamp, flo
 ChipReader::OtherStamp& ChipReader::other(std::int32_t stamp, Buffers& b) const {
   if (b.others.empty()) b.others.resize(kFrames);
   OtherStamp& out = b.others[static_cast<std::size_t>(stamp) % kFrames];
-  if (out.stamp != stamp) out = {stamp, Frame(all_[static_cast<std::size_t>(stamp)].pose)};
+  if (out.stamp != stamp) out = {stamp, StampFrame(all_[static_cast<std::size_t>(stamp)].pose)};
   return out;
 }
 
@@ -303,7 +302,7 @@ void ChipReader::add_pairs(const TileArena& arena, const Reading& stamp, Shallow
 
 /// Returns how much farther out a stamp's surface lies than that of the undeflected cutter, from the corners that name
 /// it.
-float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, std::int32_t id, const Frame& frame) const {
+float ChipReader::farther_mm(const TileArena& arena, const Shallow& p, std::int32_t id, const StampFrame& frame) const {
   const float* distance = arena.view().distance + p.cell;
   const std::int32_t* named = arena.view().stamp + p.cell;
   const Vec3 lowest = corner_mm(arena, p.cell, voxel_mm_);

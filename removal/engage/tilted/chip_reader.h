@@ -8,6 +8,7 @@
 
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
+#include "removal/engage/engaged_path.h"
 #include "removal/engage/upright/bend_memory.h"
 #include "removal/engage/upright/patch_lanes.h"
 #include "removal/engagement.h"
@@ -43,7 +44,7 @@ class ChipReader {
   /// A stamp that left a surface.
   struct OtherStamp {
     std::int32_t stamp = -1;
-    Frame frame{ToolPose{}};
+    StampFrame frame{ToolPose{}};
     std::size_t turned_from = static_cast<std::size_t>(-1);  ///< Reading::number
     Mat3 turn = Mat3::Identity();                            ///< rotation from that stamp's frame to this one's
   };
@@ -57,15 +58,14 @@ class ChipReader {
   };
 
   /// Parameters: see upright::ChipReader. `rule` says what counts as a chip.
-  ChipReader(const EnvelopeGrid& envelope, const upright::PatchLanes& lanes, std::span<const Stamp> all,
-             std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
-             const upright::BendMemory& memory, const ReadingRule& rule);
+  ChipReader(const EngagedRun& run, const upright::PatchLanes& lanes, std::span<const Stamp> stamps,
+             const DeflectionTable& deflections, const upright::BendMemory& memory, const ReadingRule& rule);
 
   /// A stamp that is read.
   struct Reading {
     std::size_t k;       ///< index in the stretch
     std::size_t number;  ///< index among all stamps
-    Frame frame;
+    StampFrame frame;
     ToothMotion motion;
     /// Chip that a point may take beyond its motion bound, mm: the stamp before had another deflection when it left the
     /// surface there.
@@ -95,7 +95,7 @@ class ChipReader {
                      Buffers& buffers) const;
   static void make_room(Buffers& buffers);
   void add_pairs(const upright::TileArena& arena, const Reading& stamp, Shallow& p, Buffers& buffers) const;
-  float farther_mm(const upright::TileArena& arena, const Shallow& p, std::int32_t id, const Frame& frame) const;
+  float farther_mm(const upright::TileArena& arena, const Shallow& p, std::int32_t id, const StampFrame& frame) const;
   void thin_pairs(Buffers& buffers) const;
   void thin_general(Buffers& buffers) const;
   Depth depth(const upright::TileArena& arena, const Reading& stamp, const Shallow& p, std::size_t end_pair,

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "removal/engage/thinnest_chip.h"
 #include "removal/field/cell.h"
 
 namespace camber::removal::upright {

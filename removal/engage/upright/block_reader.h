@@ -44,7 +44,7 @@ class BlockReader {
   /// this one meets.
   std::span<const ChipBlock> read(const TileArena& arena, const Stamp& stamp, std::span<const std::int32_t> earlier,
                                   Buffers& buffers) const;
-  /// Returns the sum of the chip thicknesses in an eighth of the blocks, always the same ones (engage/glance.h).
+  /// Returns the sum of the chip thicknesses in an eighth of the blocks, always the same ones (engage/patch_reading.h).
   double glance(const TileArena& arena, const Stamp& stamp, std::span<const std::int32_t> earlier,
                 Buffers& buffers) const;
   /// Returns the same sum from chips that were read.

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "removal/engage/upright/level_faces.h"
-#include "removal/field/upright/carve_general.h"
+#include "removal/field/upright/carve.h"
 #include "removal/simd/upright_block_kernels.h"
 
 namespace camber::removal::upright {
@@ -16,21 +16,20 @@ constexpr float kSolid = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-ChipReader::ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
-                       std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm,
+ChipReader::ChipReader(const EngagedRun& run, const PatchLanes& lanes, std::span<const Stamp> stamps,
                        const DeflectionTable& deflections, const BendMemory& memory)
-    : envelope_(envelope),
+    : envelope_(run.envelope),
       lanes_(lanes),
       view_(lanes.view()),
-      all_(all),
+      all_(run.stamps),
       stamps_(stamps),
-      first_id_(first_id),
-      voxel_mm_(voxel_mm),
+      first_id_(run.first_id),
+      voxel_mm_(run.stock.voxel_mm()),
       deflections_(deflections),
       memory_(memory),
       node_step_mm_(deflections.nodes() > 1 ? static_cast<float>(deflections.node_height_mm[1]) : 1.0f),
       kernels_(kernels()),
-      wall_half_mm_(wall_half_widths_mm(envelope)) {}
+      wall_half_mm_(wall_half_widths_mm(run.envelope)) {}
 
 /// Returns the chip that a point of stamp k may take beyond its motion bound, mm: the stamp before left the surface
 /// there at another rotation step, with another deflection.

@@ -8,6 +8,7 @@
 
 #include "removal/cutter.h"
 #include "removal/deflection_table.h"
+#include "removal/engage/engaged_path.h"
 #include "removal/engage/upright/bend_memory.h"
 #include "removal/engage/upright/patch_lanes.h"
 #include "removal/engagement.h"
@@ -39,11 +40,13 @@ class ChipReader {
     std::vector<std::int32_t> row;
   };
 
-  /// `all`: all stamps; ids in the stock are first_id + index in it. `stamps`: those of the stretch. `deflections` is
-  /// read as it stands at each call; `memory` has the rows of stamps that were cut.
-  ChipReader(const EnvelopeGrid& envelope, const PatchLanes& lanes, std::span<const Stamp> all,
-             std::span<const Stamp> stamps, std::int32_t first_id, double voxel_mm, const DeflectionTable& deflections,
-             const BendMemory& memory);
+  /// `stamps`: those of the stretch. `deflections` is read as it stands at each call; `memory` has the rows of stamps
+  /// that were cut.
+  ChipReader(const EngagedRun& run, const PatchLanes& lanes, std::span<const Stamp> stamps,
+             const DeflectionTable& deflections, const BendMemory& memory);
+
+  using Reading = std::size_t;  ///< a stamp's index in the stretch
+  Reading reading_of(std::size_t k) const { return k; }
 
   /// Lists the patches that may take a chip at stamp k.
   void find_patches(const TileArena& arena, std::size_t k, std::vector<std::int32_t>& out) const;

@@ -6,7 +6,7 @@
 
 #include "base/vector_clones.h"
 #include "removal/field/rounded_cutter.h"
-#include "removal/field/upright/carve_general.h"
+#include "removal/field/upright/carve.h"
 #include "removal/simd/upright_kernels.h"
 
 namespace camber::removal::tilted {

@@ -17,10 +17,10 @@
 namespace camber::removal::tilted {
 
 /// A place and the directions of a tool there.
-struct Frame {
+struct StampFrame {
   Vec3 tip_mm;
   Mat3 to_part;  ///< columns: the tool's x, y, z
-  explicit Frame(const ToolPose& pose) : tip_mm(pose.tip_mm), to_part(tool_frame(pose)) {}
+  explicit StampFrame(const ToolPose& pose) : tip_mm(pose.tip_mm), to_part(tool_frame(pose)) {}
 
   Vec3 in_tool(const Vec3& point) const { return to_part.transpose() * (point - tip_mm); }
   Vec3 in_part(const Vec3& point) const { return tip_mm + to_part * point; }
@@ -95,7 +95,7 @@ class RowsDue {
 struct Carving {
   const CutterShape& shape;
   const ProfileRows& profile;  ///< of the shape
-  const Frame& frame;
+  const StampFrame& frame;
   double voxel_mm, band_mm;
   std::int32_t id;
   Way way;               ///< of the stamp

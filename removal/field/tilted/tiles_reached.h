@@ -12,10 +12,10 @@
 namespace camber::removal::tilted {
 
 /// Box around the part of a cutter that is within `reach_mm` of a box of the part's frame; a cutter has no upper end.
-struct Bounds {
+struct ReachedBox {
   Vec3 lo, hi;
 };
-inline Bounds bounds_in(const CutterShape& shape, const ToolPose& pose, double reach_mm, const Bounds& box) {
+inline ReachedBox bounds_in(const CutterShape& shape, const ToolPose& pose, double reach_mm, const ReachedBox& box) {
   const double around = shape.radius_mm + reach_mm;
   // Beyond `up` above the tip the axis is farther from the box than the cutter is wide.
   const Vec3 farthest = (box.lo - pose.tip_mm).cwiseAbs().cwiseMax((box.hi - pose.tip_mm).cwiseAbs());

@@ -8,7 +8,7 @@
 
 #include "base/cancel.h"
 #include "base/stage.h"
-#include "removal/engage/tilted/engager.h"
+#include "removal/engage/tilted/deflected_path.h"
 #include "removal/engagement.h"
 #include "removal/field/slot_map.h"
 #include "removal/field/tile.h"
