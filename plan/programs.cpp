@@ -257,8 +257,8 @@ PlanProgram make_program(const PlanInput& input, const machine::Job& job, const 
     out.each[i] = nc::text_of(dialect, one);
     if (saved && saved->has(i)) {
       CompensatedProgram done = compensated(job, saved->path(i), out.each[i]);
-      written.operations[k] = nc::operation_of(dialect, one, done.emitted.text);
-      out.each[i] = std::move(done.emitted.text);
+      written.operations[k] = nc::operation_of(dialect, one, done.text);
+      out.each[i] = std::move(done.text);
       out.notes[i] = std::move(done.note);
     }
     out.times_s[i] = cycle_time_of(name, out.each[i], job).all.time.total_s();

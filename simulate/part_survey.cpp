@@ -26,7 +26,7 @@ using removal::Stock;
 namespace {
 
 /// Stamps from ... end - 1 of a run, without a rapid between them.
-struct Stretch {
+struct StampStretch {
   std::size_t from = 0, end = 0;
   double share_of(std::size_t stamp) const {
     return end - from > 1 ? static_cast<double>(stamp - from) / static_cast<double>(end - from - 1) : 0;
@@ -36,8 +36,8 @@ struct Stretch {
   }
 };
 
-std::vector<Stretch> stretches_of(std::span<const Stamp> stamps) {
-  std::vector<Stretch> out;
+std::vector<StampStretch> stretches_of(std::span<const Stamp> stamps) {
+  std::vector<StampStretch> out;
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     if (k == 0 || stamps[k].first) out.push_back({k, k});
     out.back().end = k + 1;
@@ -195,7 +195,7 @@ class RunSurvey {
 
   /// Leaves `stock` as the run does.
   void survey(Stock& stock, Stage& stage) {
-    const std::vector<Stretch> stretches = stretches_of(stamps_);
+    const std::vector<StampStretch> stretches = stretches_of(stamps_);
     out_.stretches = stretches.size();
     for (std::size_t s = 0; s < stretches.size(); ++s) {
       stretch_ = s;
@@ -317,7 +317,7 @@ class RunSurvey {
   PartSurvey& all_;
   PartSurvey::Run& out_;
   std::size_t stretch_ = 0;
-  Stretch in_stretch_;
+  StampStretch in_stretch_;
 };
 
 std::span<const Stamp> stamps_of(const removal::StampPath& path, const removal::ToolRun& run) {
@@ -373,7 +373,7 @@ bool PartSurvey::fits(const removal::StampPath& path) const {
 std::optional<PartCompliance> PartSurvey::along(const removal::StampPath& path, std::size_t run) const {
   const Run& own = runs[run];
   if (own.places.empty()) return std::nullopt;
-  const std::vector<Stretch> stretches = stretches_of(stamps_of(path, path.runs[run]));
+  const std::vector<StampStretch> stretches = stretches_of(stamps_of(path, path.runs[run]));
   PartCompliance out;
   out.height_mm = own.height_mm;
   for (const Place& p : own.places) {
