@@ -171,7 +171,7 @@ Tool read_tool(TomlTable table, int number) {
   read_holder(table, tool);
   if (tool.flutes > 0) read_teeth(table, tool);
   tool.modes = read_modes(table);
-  warn_of_one_direction(table, tool.modes);
+  if (!table.found_errors()) warn_of_one_direction(table, tool.modes);
   check_overhang(table, tool);
   take_typical_values(table, tool);
   table.ignore("assumed");  // assumptions.h

@@ -102,6 +102,8 @@ class TomlTable {
   /// An error at the value of `key`, or at the table where there is no such key.
   void error_at(std::string_view key, std::string message, std::string check);
   void warning_at(std::string_view key, std::string message, std::string check);
+  /// True where an error was found in this table or elsewhere in what was read.
+  bool found_errors() const { return diagnostics_->has_errors(); }
   /// An error at the name of `key`.
   void error_at_name(std::string_view key, std::string message, std::string check);
   void missing(std::string_view key, std::string_view wanted);
