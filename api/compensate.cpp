@@ -1,15 +1,5 @@
-// The namespace compensate comes before the function of that name: clang takes it in no other order.
+// Names of the namespace compensate come before the function of that name: clang takes them in no other order.
 #include "compensate/compensate.h"
-
-#include "camber/compensate.h"
-
-#include <filesystem>
-#include <optional>
-#include <utility>
-
-#include "api/compensation.h"
-#include "api/job.h"
-#include "api/prediction.h"
 #include "base/output_file.h"
 #include "base/stage.h"
 #include "compensate/header.h"
@@ -24,6 +14,16 @@
 #include "report/report_data.h"
 #include "report/summary.h"
 #include "report/verdict_text.h"
+
+#include "camber/compensate.h"
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "api/compensation.h"
+#include "api/job.h"
+#include "api/prediction.h"
 
 namespace camber {
 namespace {
@@ -156,9 +156,7 @@ void check_output(const std::string& output, const machine::Job& job) {
 std::string page_of(const machine::Job& job, const CompensationResult& result, const std::string& output,
                     const Diagnostics& diagnostics) {
   Diagnostics ignored;  // said already
-  const auto machined = [&](SourceText source) {
-    return simulate::simulate_motion(std::move(source), job, {}, ignored);
-  };
+  const auto machined = [&](const SourceText& source) { return simulate::simulate_motion(source, job, {}, ignored); };
   const auto rows = [&](const simulate::SimulatedProgram& program) {
     return report::rows_of_program(program, job.machine);
   };

@@ -24,11 +24,7 @@
 #include "machine/assumptions.h"
 #include "machine/compensation_settings.h"
 #include "machine/job_file.h"
-#include "report/feature_results.h"
 #include "report/joined_json.h"
-#include "report/report_data.h"
-#include "report/summary.h"
-#include "report/verdict_text.h"
 
 namespace camber::cli {
 namespace {
