@@ -6,25 +6,13 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "base/folders.h"
-#include "base/numbers.h"
 #include "base/output_file.h"
-#include "base/triangle_mesh.h"
 #include "camber/explain_kinematics.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/program_options.h"
 #include "cli/progress.h"
-#include "feedmodel/cycle_time.h"
-#include "kinematics/pose_track.h"
-#include "machine/assumptions.h"
-#include "machine/job_file.h"
-#include "nc/language.h"
-#include "nc/program.h"
-#include "report/path_arrays.h"
-#include "report/planned_picture.h"
-#include "report/setup_sheet.h"
 
 namespace camber::cli {
 namespace {

@@ -11,7 +11,6 @@
 #include "api/job.h"
 #include "base/folders.h"
 #include "base/output_file.h"
-#include "base/stage.h"
 #include "camber/verify.h"
 #include "cli/console.h"
 #include "cli/job_commands.h"
@@ -19,11 +18,8 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/rounds_progress.h"
-#include "compensate/trial.h"
 #include "compensate/verify.h"
-#include "machine/assumptions.h"
 #include "machine/compensation_settings.h"
-#include "machine/job_file.h"
 #include "report/joined_json.h"
 
 namespace camber::cli {

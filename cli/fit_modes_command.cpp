@@ -13,8 +13,6 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "dynamics/fit_modes.h"
-#include "machine/job_tables.h"
-#include "report/response_svg.h"
 
 namespace camber::cli {
 namespace {

@@ -3,10 +3,6 @@
 #include <fmt/format.h>
 
 #include "cli/console.h"
-#include "cli/mpi_run.h"
-#include "cli/outputs.h"
-#include "compensate/verify.h"
-#include "machine/job_file.h"
 
 namespace camber::cli {
 

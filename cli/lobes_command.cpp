@@ -13,10 +13,6 @@
 #include "cli/command_line.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "dynamics/tool_lobes.h"
-#include "dynamics/tool_modes.h"
-#include "machine/job_file.h"
-#include "report/lobes_svg.h"
 
 namespace camber::cli {
 namespace {

@@ -15,8 +15,6 @@
 #include "cli/outputs.h"
 #include "cli/program_options.h"
 #include "cli/progress.h"
-#include "machine/job_file.h"
-#include "nc/language.h"
 
 namespace camber::cli {
 namespace {

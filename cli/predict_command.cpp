@@ -15,11 +15,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "distribute/sections.h"
-#include "machine/assumptions.h"
-#include "machine/job_file.h"
-#include "report/feature_results.h"
 #include "report/joined_json.h"
-#include "report/summary.h"
 
 namespace camber::cli {
 
