@@ -8,9 +8,8 @@
 #include <fmt/format.h>
 
 #include "kinematics/control_options.h"
+#include "kinematics/machine_program.h"
 #include "nc/emit.h"
-#include "nc/interpreter.h"
-#include "nc/language.h"
 #include "nc/spindle_speeds.h"
 #include "simulate/chatter.h"
 #include "simulate/stable_speed.h"
@@ -64,13 +63,13 @@ class SpeedWriter {
         if (is_of(program_, m, *c)) rpm[m] = c->advised_rpm;
     nc::SpeedEmission speeds = nc::emit_spindle_speeds(program_.text(), program_.moves_in_part(), rpm);
     if (!speeds.why_not.empty()) return {{}, fmt::format("{} (line {})", speeds.why_not, speeds.line)};
-    const nc::Program text = read(speeds.emission.text);
-    const nc::Interpretation there = interpret(text);
+    const kinematics::MachineProgram at_speed = read(speeds.emission.text);
+    const nc::Interpretation& there = at_speed.commanded();
     if (there.moves.size() != moves.size()) return {{}, "the program runs otherwise at another speed"};
     const auto edits = feed_edits(rpm, there);
     if (!edits) return {{}, "the program sets its speed otherwise than by S words"};
     nc::Emission feeds =
-        nc::emit_edits(text, there, *edits, kinematics::decimals_for(job_.machine.control, program_.text()));
+        nc::emit_edits(at_speed.text(), there, *edits, kinematics::decimals_for(job_.machine.control, program_.text()));
     if (!feeds.not_made.empty()) {
       const nc::EditNotMade& first = feeds.not_made.front();
       return {{},
@@ -83,13 +82,12 @@ class SpeedWriter {
   }
 
  private:
-  nc::Program read(const std::string& text) const {
+  kinematics::MachineProgram read(const std::string& text) const {
     Diagnostics ignored;  // those of the given program are known
-    return nc::read_program(SourceText(job_.program, text), program_.text().language, ignored);
-  }
-  nc::Interpretation interpret(const nc::Program& text) const {
-    Diagnostics ignored;
-    return nc::interpret(text, kinematics::interpreter_options(job_.machine, job_.inch), ignored);
+    return kinematics::open_program(
+        SourceText(job_.program, text), job_.machine,
+        {.given = {.inch = job_.inch}, .rotary = kinematics::RotaryWords::never, .language = program_.text().language},
+        ignored);
   }
 
   /// Of the cuts whose feed does not change with the speed by itself (G95). Nothing: a cut has another speed than is

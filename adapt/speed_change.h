@@ -28,7 +28,7 @@ struct SpeedChange {
   std::string reason{};      ///< why the speed that keeps the limit is not in the text; empty: it is, or there is none
 };
 
-/// `limit`: greatest margin. For each tool at each speed: its margin, and the speed that would keep the limit.
+/// For each tool at each programmed speed: its greatest margin, and the speed that would keep the job's limit.
 std::vector<SpeedChange> find_speed_changes(const machine::Job& job, const simulate::SimulatedProgram& program,
                                             std::span<const simulate::StampLoad> loads);
 

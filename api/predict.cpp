@@ -33,7 +33,7 @@ void add_feed_points(const machine::Job& job, const api::PreparedJob& prepared, 
   if (prepared.traced)
     sink(prepared.traced->samples);
   else
-    feedmodel::predict_feed(program.turns() ? program.moves_of_axes() : program.moves_in_part(), job.machine, sink);
+    feedmodel::predict_feed(program.moves_of_axes(), job.machine, sink);
 }
 
 }  // namespace
