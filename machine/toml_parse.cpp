@@ -1,8 +1,9 @@
 namespace {
 /// What the parser takes for its own fault, and is a fault of the text all the same: `[ =a]`.
 struct ParserRefusal {};
+[[noreturn]] void refuse_text() { throw ParserRefusal{}; }
 }  // namespace
-#define TOML_ASSERT(expr) (static_cast<bool>(expr) ? static_cast<void>(0) : throw ParserRefusal{})
+#define TOML_ASSERT(expr) (static_cast<bool>(expr) ? static_cast<void>(0) : refuse_text())
 // toml++ 3.3 reaches "unreachable" places of its tables of characters, as for an umlaut where a blank may stand.
 #include <toml++/impl/preprocessor.h>
 #undef TOML_UNREACHABLE
