@@ -317,7 +317,7 @@ void finish_result(const FinishedPrediction& done, const PredictOptions& options
   const std::vector<std::string> assumed = machine::assumptions(done.job);
   const auto features = report::features_of(done.job, prediction.surface);
   std::string json = report::predict_json(program, prediction, compute_s, traced, done.doubts);
-  if (done.with_more) json = done.with_more(std::move(json));
+  if (done.with_more) json = done.with_more(json);
   result.json = machine::with_assumptions(report::with_features(std::move(json), {{"features", features}}), assumed);
   result.printed = machine::assumptions_text(assumed) + report::predict_text(program, prediction, compute_s, traced) +
                    report::features_text(features);

@@ -57,7 +57,7 @@ struct FinishedPrediction {
   simulate::Prediction& prediction;
   std::vector<std::string> doubts;  ///< why the figures are not reliable; see doubts_of
   /// JSON text with what belongs to this kind of prediction; empty: as it is.
-  std::function<std::string(std::string json)> with_more{};
+  std::function<std::string(const std::string& json)> with_more{};
 };
 
 /// Fills `result` but for `feed` and the meshes, and writes the files of options.output_folder, summary.json last; the

@@ -83,7 +83,7 @@ PredictResult merge_parts(const machine::Job& job, const distribute::PartKey& ke
                           .prepared = prepared,
                           .prediction = prediction,
                           .doubts = doubts_of(job, setup.program, prediction),
-                          .with_more = [&](std::string json) { return report::with_sections(json, figures); }};
+                          .with_more = [&](const std::string& json) { return report::with_sections(json, figures); }};
   if (std::string doubt = doubt_of(job, figures, round); !doubt.empty()) done.doubts.push_back(std::move(doubt));
   PredictResult out;
   finish_result(done, joined, run, found, out);

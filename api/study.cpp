@@ -215,7 +215,7 @@ Study::Impl plan_study(const std::string& path, const std::string& folder, Diagn
 }
 
 std::string command_line(const Study::Impl& plan, const PlannedCase& one) {
-  const std::string command =
+  std::string command =
       fmt::format("camber -q {} {} -o {}", command_name(plan.study), shell_word(one.job_path), shell_word(one.output));
   if (plan.study.command == StudyCommand::predict) return command;
   return command + fmt::format(" --report {} --json {}", shell_word(one.report_path), shell_word(one.json_path));

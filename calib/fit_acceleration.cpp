@@ -323,7 +323,7 @@ Accelerations traced_accelerations(const std::vector<const ServoTrace*>& traces,
   Accelerations out{};
   for (int axis = 0; axis < 3; ++axis) {
     out[static_cast<std::size_t>(axis)] = traced_acceleration(traces, axis);
-    if (!rotary.empty()) out[static_cast<std::size_t>(3 + axis)] = traced_acceleration(rotary, axis);
+    if (!rotary.empty()) out[3 + static_cast<std::size_t>(axis)] = traced_acceleration(rotary, axis);
   }
   return out;
 }

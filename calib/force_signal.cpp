@@ -305,6 +305,7 @@ std::size_t ForceTable::find_column(const machine::LogQuantity& q, const char* k
   const auto at = std::ranges::find(header, q.column, &Field::text);
   if (at != header.end()) return static_cast<std::size_t>(at - header.begin());
   std::vector<std::string_view> names;
+  names.reserve(header.size());
   for (const Field& f : header) names.push_back(f.text);
   return error(fmt::format("there is no column \"{}\" for {} of [force_log]; the columns are {}", q.column, key,
                            fmt::join(names, ", ")));

@@ -42,8 +42,9 @@ int say_verdict(bool success, const std::string& headline, const std::vector<std
   return kNumbersDidNotWorkOut;
 }
 
-CompensateResult compensate_shown(const Job& job, CompensateOptions asked, const GlobalOptions& options,
+CompensateResult compensate_shown(const Job& job, const CompensateOptions& given, const GlobalOptions& options,
                                   const simulate::Predictor& predictor) {
+  CompensateOptions asked = given;
   ProgressLine progress(options, "reading");
   RunOptions run = run_options(progress, options);
   run.warn = [&, warn = run.warn](const std::vector<Diagnostic>& warnings) {
@@ -108,7 +109,7 @@ std::string own_name(const std::string& path, const std::string& program) {
 std::string own_output(const std::string& folder, const std::string& program, const std::string& name,
                        const std::vector<std::string>& others) {
   const std::filesystem::path given(program);
-  const std::string out = (std::filesystem::path(folder) / given.filename()).string();
+  std::string out = (std::filesystem::path(folder) / given.filename()).string();
   if (std::ranges::find(others, out) == others.end()) return out;
   return (std::filesystem::path(folder) / (name + given.extension().string())).string();
 }

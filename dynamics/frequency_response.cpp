@@ -70,7 +70,7 @@ class UniversalReader {
   void for_each_set(const Function& f) const {
     bool inside = false;
     for (std::size_t line = 1; line <= source_.line_count(); ++line) {
-      if (field(source_.line(line), 0, 6) != "-1" || field(source_.line(line), 6, 80) != "") continue;
+      if (field(source_.line(line), 0, 6) != "-1" || !field(source_.line(line), 6, 80).empty()) continue;
       inside = !inside;
       if (inside && line < source_.line_count()) f(line + 1, field(source_.line(line + 1), 0, 80));
     }
