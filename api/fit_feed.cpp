@@ -21,7 +21,7 @@
 #include "kinematics/offset_check.h"
 #include "report/block_time_plot.h"
 #include "report/fit_feed_page.h"
-#include "report/fit_feed_summary.h"
+#include "report/fit_summary.h"
 
 namespace camber {
 namespace {

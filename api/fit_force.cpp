@@ -3,7 +3,7 @@
 #include "api/run.h"
 #include "calib/fit_force.h"
 #include "machine/force_law.h"
-#include "report/fit_force_summary.h"
+#include "report/fit_summary.h"
 
 namespace camber {
 

@@ -2,7 +2,7 @@
 
 #include "api/run.h"
 #include "dynamics/fit_modes.h"
-#include "report/fit_modes_summary.h"
+#include "report/fit_summary.h"
 #include "report/response_svg.h"
 
 namespace camber {

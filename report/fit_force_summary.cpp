@@ -1,4 +1,4 @@
-#include "report/fit_force_summary.h"
+#include "report/fit_summary.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "report/fit_modes_summary.h"
+#include "report/fit_summary.h"
 
 #include <fmt/format.h>
 
