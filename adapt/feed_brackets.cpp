@@ -5,7 +5,7 @@
 namespace camber::adapt {
 namespace {
 
-constexpr double kNear = 0.5;  ///< of the limit: from there on extrapolated in proportion
+constexpr double kNear = 0.5;  ///< share of the limit from which on forces are extrapolated in proportion
 
 }  // namespace
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kMinSpeed_mm_per_s = 1e-3;
 
-/// Of the tangential force without its edge term: d ln F / d ln h.
+/// d ln F / d ln h of the tangential force without its edge term.
 double exponent_at(const machine::Material& material, double chip_mm) {
   if (machine::is_affine(material.law) || chip_mm <= 0) return 1;
   const double force = deflection::edge_force(material, chip_mm, 1).tangential_N - material.kte_N_per_mm;

@@ -69,7 +69,7 @@ bool is_to_cut(const nc::Interpretation& moves) {
   });
 }
 
-/// As predict's prepare() up to its sweeps: a height map tells of clearance in seconds. Where none describes the job,
+/// Prepares the job as predict does up to its sweeps: a height map tells of clearance in seconds. Where none describes the job,
 /// all of it.
 double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
   const auto check = [&](const simulate::SimulatedProgram& program) {
@@ -98,7 +98,8 @@ double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
   return bytes;
 }
 
-/// What predict would say of the job before its cut, as far as it is not said yet. Returns the memory that it needs.
+/// Reports what predict would say of the job before its cut, as far as it is not said yet. Returns the memory that it
+/// needs.
 std::optional<double> add_what_predict_says(machine::Job job, const std::string& program, Diagnostics& found) {
   job.program = program;
   Diagnostics of_predict;
@@ -163,7 +164,7 @@ Checked check_program(const CheckAsked& asked, Diagnostics& found,
   return checked;
 }
 
-/// As the control of the machine plans it, where a machine is known; the machine itself where rotary axes turn.
+/// The path as the machine's control plans it, where a machine is known; the machine itself where rotary axes turn.
 report::CheckPicture picture_of(const nc::Interpretation& moves, const machine::Machine* machine,
                                 const machine::Job* job) {
   report::CheckPicture picture;

@@ -36,7 +36,7 @@ struct FeedRuns {
   }
 };
 
-/// What a trace file holds shows in its content.
+/// Kind of a trace file, by its content.
 enum class TraceKind { servo, machine_log, stretch_table };
 
 TraceKind kind_of(const std::string& path) {

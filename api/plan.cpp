@@ -76,7 +76,7 @@ void add_copy_job(const plan::PlanInput& input, const plan::SetupPlan& setup, co
                      plan::copy_job_toml(job, plan::copy_operations(input, setup.plans[setup.best])));
 }
 
-using Programs = std::vector<std::optional<plan::PlanProgram>>;  ///< of the plans of one set-up
+using Programs = std::vector<std::optional<plan::PlanProgram>>;  ///< programs of the plans of one set-up
 
 /// Of the plan that is taken, or of all that are complete; the times go to the plans.
 Programs make_programs(const plan::PlanInput& input, plan::SetupPlan& setup, const std::string& end, bool all,

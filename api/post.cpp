@@ -14,7 +14,7 @@
 namespace camber {
 namespace {
 
-constexpr int kPostSamples = 16;  ///< of each piece
+constexpr int kPostSamples = 16;  ///< samples of each piece
 
 repath::PostOptions rules_of(const PostOptions& options) {
   return {.target = options.to_tip ? repath::PostTarget::tcp : repath::PostTarget::joints,

@@ -48,7 +48,7 @@ int tool_of(const PostureCommand& command) {
                "the job has several tools; --tool with the number of the finishing tool was expected", "no-tool");
 }
 
-/// As asked for, else as the control has it; a head that turns has no G254.
+/// The words asked for, else those of the control; a head that turns has no G254.
 nc::OneDirection written_as(const PostureCommand& command) {
   const machine::Machine& machine = command.job->machine;
   if (!command.options.indexed) return nc::OneDirection::tip;

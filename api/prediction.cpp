@@ -108,7 +108,7 @@ std::size_t work_of_writing(const simulate::SimulatedProgram& program, const sim
          static_cast<std::size_t>(program.feed.time_s / job.machine.control.period_s);
 }
 
-/// What the folder holds but summary.json, side by side. The machined stock is given up once it is saved.
+/// Writes all files of the folder but summary.json, side by side. The machined stock is given up once it is saved.
 void write_files(const machine::Job& job, const PreparedJob& prepared, simulate::Prediction& prediction,
                  const PredictOptions& options, const Diagnostics& diagnostics) {
   const fs::path folder = options.output_folder;

@@ -20,7 +20,7 @@ namespace camber::api {
 /// Reports the stage that runs and, where it is known, the fraction of it that is done (0 to 1).
 using StepProgress = std::function<void(const std::string& what, std::optional<double> share)>;
 
-/// What a prediction is given beside its options.
+/// Inputs of a prediction beside its options.
 struct PredictionWork {
   StepProgress progress{};
   simulate::TargetWork work{};  ///< target work that other processes have done

@@ -18,7 +18,7 @@
 namespace camber {
 namespace {
 
-constexpr double kComparedStepMm = 0.1;  ///< of the raster that it is set against
+constexpr double kComparedStepMm = 0.1;  ///< step of the raster that it is set against
 constexpr double kAboveAllMm = 5;
 constexpr double kLeadInMm = 1;
 constexpr double kLargestPartMm = 1e4;
@@ -56,7 +56,7 @@ const machine::Tool& raster_tool(const machine::Job& job, const RasterOptions& a
   return found->second;
 }
 
-/// Of the rectangle that was asked for, what lies over the part.
+/// The share of the rectangle that lies over the part.
 repath::Rectangle raster_boundary(const RasterOptions& asked, const std::string& part, const repath::DropCutter& drop) {
   const Vec2 low = drop.min_mm().head<2>(), high = drop.max_mm().head<2>();
   if (const double size = (high - low).maxCoeff(); size > kLargestPartMm)

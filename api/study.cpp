@@ -65,7 +65,7 @@ std::string content_hash(const std::string& path, std::map<std::string, std::str
   return at->second;
 }
 
-/// Of version, command, job and the contents of its files. Where the study lies does not count.
+/// Hash of version, command, job and the contents of its files. Where the study lies does not count.
 std::string case_hash(const machine::Study& study, const machine::StudyCase& one,
                       std::map<std::string, std::string>& known) {
   std::string all =

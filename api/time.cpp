@@ -124,12 +124,12 @@ report::CycleRow row_of(std::string name, std::vector<double> values, const nc::
   return row;
 }
 
-/// What was timed, and the path of the first of it where a page is asked for.
+/// Rows that were timed, and the path of the first one where a page is asked for.
 struct Timed {
   std::vector<report::CycleRow> rows{};
   report::PathPicture picture{};
   report::MachineCards machine{};
-  bool rotary_motion = false;    ///< of the first of it
+  bool rotary_motion = false;    ///< the first row's program turns rotary axes
   bool machine_unknown = false;  ///< a program with rotary motion of which the positions of the axes are not known
 };
 

@@ -29,7 +29,7 @@ struct PartFile {
   std::string content;
 };
 
-/// What stands before the content.
+/// Makes the bytes that stand before the content.
 std::string head_of(const PartName& name, const PartKey& key) {
   ByteWriter out;
   out.text(CAMBER_VERSION);

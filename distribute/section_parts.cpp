@@ -33,7 +33,7 @@ std::vector<StockPart> parts_within(const std::vector<StockPart>& parts, const R
   return out;
 }
 
-/// What is not a list.
+/// Members of a CutResult that are no lists.
 struct CutFigures {
   double chip_mm3, stock_mm3, deflection_max_mm, deflection_limit_mm, extrapolation_sum2_um2, extrapolation_max_um;
   std::uint64_t read, unsettled, extrapolations;

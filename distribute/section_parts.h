@@ -15,21 +15,21 @@
 
 namespace camber::distribute {
 
-/// What was done, for the efficiency of many.
+/// Amount of work, for the efficiency of many.
 struct SectionWork {
   std::size_t stamps = 0;  ///< carved, read or marked
-  std::size_t voxels = 0;  ///< of the parts that were made
+  std::size_t voxels = 0;  ///< voxels of the parts that were made
 };
 
-/// What a section has carved out of the raw stock, for the others.
+/// The material that a section has carved out of the raw stock, for the others.
 struct SweptSection {
-  std::vector<removal::StockPart> stock;     ///< of the program; one per run of which the section has pieces
-  removal::StockPart target;                 ///< of the nominal path
-  removal::StockPart allowance;              ///< of the target program with the cutter shrunk by the allowance
+  std::vector<removal::StockPart> stock;     ///< cut by the program; one per run of which the section has pieces
+  removal::StockPart target;                 ///< cut by the nominal path
+  removal::StockPart allowance;              ///< cut by the target program with the cutter shrunk by the allowance
   double target_mm3 = 0, allowance_mm3 = 0;  ///< sums over pieces
   SectionWork work;
 
-  /// What a section that reads within `region` needs.
+  /// The part of it that a section reading within `region` needs.
   SweptSection within(const removal::Region& region, double voxel_mm) const;
   void write(ByteWriter& out) const;
   static SweptSection read(ByteReader& in);
@@ -47,21 +47,22 @@ struct OwnSweep {
 
 /// A mark on a point of the target's surface.
 struct SurfaceMark {
-  Vec3 place_mm = Vec3::Zero();  ///< of the point: none has another one's
+  Vec3 place_mm = Vec3::Zero();  ///< place of the point; no two are at one place
   double error_mm = 0;
   std::int32_t stamp = -1;
   std::int32_t unused = 0;  ///< no byte of a file is left to chance
 };
 using SurfaceMarks = std::vector<SurfaceMark>;  ///< in the order of the map's points
 
-/// What a section has solved, for the others, and for the merge.
+/// The solution of a section, for the others and for the merge.
 struct SolvedSection {
   std::vector<removal::StockPart> stock;  ///< static: what the deflected cutter cut, one per run
   std::vector<double> largest_bend_mm;    ///< static: one per run
   std::vector<float> last_bend;           ///< static: BendBefore::rows of its last piece
   struct Round {
     std::uint64_t solved_again = 0;  ///< pieces
-    double largest_change_um = 0;  ///< of the stock before a piece, or of the tool's bend there, since the round before
+    double largest_change_um =
+        0;  ///< largest change of the stock before a piece, or of the tool's bend there, since the round before
   };
   std::vector<Round> history;  ///< from the second round on
   SectionWork work;
@@ -69,7 +70,7 @@ struct SolvedSection {
   std::vector<simulate::CutResult> cuts;  ///< one per piece, without bend
   SurfaceMarks marks, contour;            ///< the deepest of all pieces; contour: of the target program
 
-  /// What a section that reads within `region` needs: nothing for the merge.
+  /// The part of it that a section reading within `region` needs; nothing that only the merge needs.
   SolvedSection within(const removal::Region& region, double voxel_mm) const;
   void write(ByteWriter& out) const;
   static SolvedSection read(ByteReader& in);
@@ -81,7 +82,7 @@ struct SolvedPiece {
   std::vector<removal::PointMark> marks;  ///< on the section's map
   removal::StockPart stock;               ///< static: what the deflected cutter cut
 };
-/// What the next rounds of the same section read.
+/// The part of a solution that the next rounds of the same section read.
 struct OwnSolution {
   std::vector<SolvedPiece> pieces;
 

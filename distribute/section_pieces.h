@@ -31,12 +31,12 @@ std::vector<RunPieces> runs_of(const std::vector<simulate::PathPiece>& pieces, c
 removal::Region reach_of_tips(const machine::Job& job, const removal::ToolRun& run, const removal::Region& tips);
 /// Where a piece cuts, reads and marks: a cutter about each tip, and all above it. Everywhere where an axis is tilted.
 removal::Region reach_of(const machine::Job& job, const simulate::PathStretch& path, const simulate::PathPiece& piece);
-/// Of all pieces in a range. Empty where there is none.
+/// The box around all pieces in a range. Empty where there is none.
 removal::Region reach_of(const machine::Job& job, const simulate::PathStretch& path,
                          const std::vector<simulate::PathPiece>& pieces, const PieceRange& range);
 
-/// What a section does not cut is joined this far around it, so that no reading of a neighbour misses it. Empty where
-/// `reach` is.
+/// Stock that a section does not cut itself is joined this far around it, so that no reading of a neighbour misses it.
+/// Empty where `reach` is.
 removal::Region joined_region(const machine::Job& job, const removal::Region& reach);
 
 }  // namespace camber::distribute

@@ -28,7 +28,7 @@ void follow_path(SimulatedProgram& program, const Job& job, const removal::Stamp
   program.path.stamps = {};
 }
 
-/// What one way along a path has found.
+/// The findings of one way along a path.
 struct Outlines {
   PathOutline path, nominal;
   bool whole = false;  ///< SimulatedProgram::path has all; `nominal` is empty
@@ -74,7 +74,7 @@ ListRange numbers_of(const PathStretch& path, const SectionPlace& place) {
   return {path.begin_of(place.pieces[place.own.begin]), path.begin_of(last) + last.count};
 }
 
-/// As reach_of() of the pieces of a section; from the boxes of the outline.
+/// reach_of() of the pieces of a section, from the boxes of the outline.
 Region reach_in(const Job& job, const PathOutline& outline, const SectionPlace& place) {
   const PathStretch path(outline.runs, {}, {});
   Region out;

@@ -48,10 +48,10 @@ class SectionPrograms {
   /// once more, unless it was the last one.
   void go_to(std::size_t section, std::size_t sections);
 
-  /// As the machine runs them.
+  /// The programs as the machine runs them.
   simulate::PathStretch path() const;
   simulate::PathStretch target_path() const;
-  /// Of path(), where it is thin; else null.
+  /// Outline of path(), where it is thin; else null.
   const simulate::PathOutline* outline() const { return thin_ ? &thin_->path.outline : nullptr; }
   /// Where the pieces of any section lie on these two, or a little more.
   removal::Region reach(std::size_t section, std::size_t sections) const;
@@ -63,11 +63,11 @@ class SectionPrograms {
   std::optional<simulate::Programs> take();
 
  private:
-  /// Of thin programs.
+  /// Paths of thin programs.
   struct Thin {
     simulate::ThinPath path;
-    std::optional<simulate::ThinPath> original;  ///< of a target that is another program
-    simulate::ThinPath nominal;                  ///< of the target
+    std::optional<simulate::ThinPath> original;  ///< path of a target that is another program
+    simulate::ThinPath nominal;                  ///< nominal path of the target
     std::optional<std::size_t> section{};
     std::size_t sections = 0;
     const simulate::ThinPath& target() const { return original ? *original : path; }

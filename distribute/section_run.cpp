@@ -98,7 +98,7 @@ bool SectionRun::sweep(std::size_t section) {
   return true;
 }
 
-/// What a round of solving reads. Of the other sections only what lies in the section's region.
+/// Parts that a round of solving reads. Of the other sections only what lies in the section's region.
 SectionParts SectionRun::parts_before(std::size_t section, int round) {
   const double voxel_mm = job_.simulation.voxel_mm;
   SectionParts out;

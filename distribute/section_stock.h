@@ -13,7 +13,7 @@ namespace camber::distribute {
 /// How a path is divided, and which part is a section's own.
 struct SectionPlace {
   std::vector<simulate::PathPiece> pieces;
-  std::vector<PieceRange> ranges;  ///< of all sections
+  std::vector<PieceRange> ranges;  ///< ranges of all sections
   std::size_t section = 0;
   PieceRange own{};
 

@@ -86,7 +86,7 @@ std::vector<StockPart> joined_runs(const SectionPlace& place, const std::vector<
   return out;
 }
 
-/// Of the section's own pieces.
+/// The section's own pieces.
 std::size_t stamps_in(const SectionPlace& place) {
   std::size_t out = 0;
   for (std::size_t p = place.own.begin; p < place.own.end; ++p) out += place.pieces[p].count;
@@ -220,7 +220,7 @@ class SectionSolver {
     return out;
   }
 
-  /// What all pieces of a run share. Null: they look at all its stamps, which then are in memory.
+  /// Facts that all pieces of a run share. Null: they look at all its stamps, which then are in memory.
   const removal::KnownRun* known_run(std::size_t r) {
     if (run_ == r) return known_ ? &*known_ : nullptr;
     run_ = r;
@@ -236,7 +236,7 @@ class SectionSolver {
     return known_ ? &*known_ : nullptr;
   }
 
-  /// What others need of the pieces.
+  /// Joins what others need of the pieces.
   void join_pieces(Solved& out) const {
     DeepestMarks marks(*target_.map);
     for (const SolvedPiece& piece : out.own.pieces) {

@@ -29,8 +29,8 @@ struct Swept {
   SweptSection section;
   OwnSweep own;
 };
-/// What the section keeps for itself (OwnSweep) is given piece by piece to `own`, and not kept. `programs` are at the
-/// section, here and below.
+/// The sweep that the section keeps for itself (OwnSweep) is given piece by piece to `own`, and not kept. `programs`
+/// are at the section, here and below.
 SweptSection sweep_section(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
                            std::size_t sections, const std::function<void(const removal::StockPart&)>& own,
                            Diagnostics& diagnostics);
@@ -60,7 +60,7 @@ struct SolveOptions {
   std::size_t section = 0, sections = 1;
   std::optional<std::size_t> turn_from{};  ///< see PredictOptions
   std::function<void(double)> progress{};
-  const simulate::PathOutline* outline = nullptr;  ///< of a path that is not in memory as a whole
+  const simulate::PathOutline* outline = nullptr;  ///< outline of a path that is not in memory as a whole
 };
 struct Solved {
   SolvedSection section;
@@ -76,7 +76,7 @@ Solved solve_path_section(const machine::Job& job, const simulate::Target& targe
                           const SectionPlace& place, const SectionParts& parts,
                           const std::function<void(double)>& progress);
 
-/// What a section reads of others' parts: the rest may be left out, here. Empty where the section has nothing.
+/// Regions that a section reads of others' parts; the rest may be left out here. Empty where the section has nothing.
 /// `programs` may be at another section.
 removal::Region section_region(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
                                std::size_t sections);

@@ -31,7 +31,8 @@ std::uint64_t solved_again(const std::vector<SolvedSection>& sections) {
   return out;
 }
 
-/// What two predictions must share so that one begins where the other ended: the voxels, and how the path is divided.
+/// Properties that two predictions must share so that one begins where the other ended: the voxels, and how the path is
+/// divided.
 struct Division {
   struct PiecesOfRun {
     int tool = 0;
@@ -40,7 +41,7 @@ struct Division {
     bool operator==(const PiecesOfRun&) const = default;
   };
   double voxel_mm = 0, band_mm = 0;
-  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();  ///< of the blank
+  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();  ///< box of the blank
   std::vector<PiecesOfRun> runs;
 
   bool operator==(const Division&) const = default;

@@ -17,10 +17,10 @@ struct Crew {
   std::function<std::vector<std::string>(const std::function<std::string(std::size_t rank)>& bytes)> exchange;
 };
 
-/// What the predictions of a crew took; the same for every size of it.
+/// Cost of the predictions of a crew; the same for every size of it.
 struct CrewFigures {
   std::size_t predictions = 0;
-  std::size_t from_the_last = 0;  ///< of them, that began from the stock and the bends of the prediction before
+  std::size_t from_the_last = 0;  ///< those that began from the stock and the bends of the prediction before
   std::size_t pieces = 0, rounds = 0, solved = 0;  ///< sums; solved: pieces, again in each round
 };
 

@@ -41,7 +41,7 @@ class StabilityTable {
 
   /// The exact one, of the same method.
   CriticalDepth exactly_at(const ArcCut& cut) const;
-  /// Of zero order, whatever the cut.
+  /// Limit of zero order, whatever the cut.
   CriticalDepth zero_order_at(const ArcCut& cut) const;
   /// Critical depths at other speeds: by semi-discretisation where the cut is short or the teeth unequal, else of
   /// zero order.

@@ -63,7 +63,7 @@ LobePoint rounded_semi(const LobeRequest& r, const std::vector<double>& depths, 
   return {rpm, {}, StabilityBorder::none};
 }
 
-/// Of zero order: where the critical depth of a depth's cut falls below the depth.
+/// Limit of zero order: where the critical depth of a depth's cut falls below the depth.
 LobePoint rounded_zero(const std::vector<ZeroOrderLobes>& lobes, const std::vector<double>& depths, double rpm) {
   CriticalDepth before;
   for (std::size_t i = 0; i < depths.size(); ++i) {

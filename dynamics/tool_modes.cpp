@@ -43,7 +43,7 @@ Eigen::Matrix4d mirrored(Eigen::Matrix4d m) {
   return m;
 }
 
-/// Of the displacements (w, slope) of the lower and the upper end.
+/// Stiffness by the displacements (w, slope) of the lower and the upper end.
 Eigen::Matrix4d element_stiffness(const BeamElement& e) {
   const double l = e.length_mm, p = 12 * e.bending_N_mm2 / (e.shear_N * l * l);
   Eigen::Matrix4d k;

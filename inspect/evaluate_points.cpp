@@ -50,7 +50,7 @@ void evaluate_points(Evaluation& e) {
   for (const double h : heights[2]) e.out.deviations_um.push_back(1000 * h);
 }
 
-/// Of two surfaces that face along the line through the two points.
+/// Distance of two surfaces that face along the line through the two points.
 void evaluate_point_distance(Evaluation& e) {
   const Feature& f = e.feature;
   const Vec3 along = (f.axis_mm[1] - f.axis_mm[0]).normalized();
@@ -76,7 +76,7 @@ void evaluate_point_distance(Evaluation& e) {
   e.set_sizes(size(Layer::nominal), size(Layer::contour), size(Layer::machined));
 }
 
-/// Of the middles of two other features, along the line between their nominal places and across their axes.
+/// Distance of the middles of two other features, along the line between their nominal places and across their axes.
 void evaluate_distance_of(Evaluation& e, const Evaluation& a, const Evaluation& b) {
   for (const Evaluation* other : {&a, &b})
     if (!other->placed) {

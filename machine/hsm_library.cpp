@@ -72,7 +72,7 @@ class HsmTool {
     return *number * unit;
   }
 
-  /// Of the body; zero where it is not given.
+  /// Length of the body; zero where it is not given.
   double size(const char* attribute, double unit) const { return value("body", attribute, unit).value_or(0); }
 
   double number_of(const pugi::xml_node& node, const char* attribute) const {

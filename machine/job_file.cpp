@@ -407,7 +407,7 @@ std::vector<std::string> read_programs(TomlTable& top, const fs::path& folder) {
   return out;
 }
 
-/// What belongs to one program alone.
+/// Keys that belong to one program alone.
 void check_several(TomlTable& top, const JobOfPrograms& read) {
   if (read.programs.size() < 2) return;
   const auto refuse = [&](const char* what) {

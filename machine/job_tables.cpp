@@ -37,7 +37,7 @@ void read_profile_numbers(TomlTable& table, Tool& tool, std::string_view type) {
   }
 }
 
-/// What does not fit together in a profile.
+/// Reports what does not fit together in a profile.
 void check_profile(TomlTable& table, const Tool& tool) {
   const double radius = tool.diameter_mm / 2;
   if (!(radius > 0)) return;
@@ -96,8 +96,8 @@ void read_holder(TomlTable& table, Tool& tool) {
     tool.holder.push_back({row[0], row[1], row[2]});
 }
 
-/// What nobody gave and every tool has: typical values (docs/measured-parts.md). A rigid clamp is never true; a cutter
-/// has flutes along about three diameters, above which it is a shank.
+/// Fills in what nobody gave and every tool has: typical values (docs/measured-parts.md). A rigid clamp is never true;
+/// a cutter has flutes along about three diameters, above which it is a shank.
 void take_typical_values(const TomlTable& table, Tool& tool) {
   constexpr double kRoot_N_per_mm = 20000, kFluteDiameters = 3;
   if (!table.has("root_stiffness_N_per_um")) {

@@ -47,7 +47,7 @@ std::string kind_of(const pugi::xml_node& actual) {
   return std::string(name.substr(0, name.find("Characteristic")));
 }
 
-/// What a part's size or place is: no angles, no counts.
+/// Characteristics that are a size or a place: no angles, no counts.
 bool is_length(std::string_view kind) {
   return kind.find("Angle") == std::string_view::npos && kind.find("UserDefined") == std::string_view::npos &&
          kind.find("Surface") == std::string_view::npos && kind.find("Thread") == std::string_view::npos;

@@ -21,7 +21,7 @@ struct AxisParameter {
   std::string_view native, unit;  ///< as the control's manual has it
   double Axis::*field;
   double inside_factor;
-  std::string_view key;  ///< of [axis.x]
+  std::string_view key;  ///< key of [axis.x]
   double key_factor;     ///< from inside
 };
 

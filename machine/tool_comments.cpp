@@ -17,7 +17,7 @@
 namespace camber::machine {
 namespace {
 
-/// What a comment says, before it is known whose comment it is.
+/// Contents of a comment, before it is known whose comment it is.
 struct Mention {
   std::size_t line = 0;
   std::optional<int> number;

@@ -172,7 +172,7 @@ void ToolShelf::fill(TomlTable& table) const {
 
 namespace {
 
-/// What a file of tools says is wrong stands in it; where it is missing, the job names it.
+/// Errors within a file of tools are reported there; that it is missing is reported at the job's line.
 void add_problem(TomlTable& top, const InputError& problem, Diagnostics& diagnostics) {
   for (const Diagnostic& d : problem.diagnostics())
     if (d.check == "file-missing" || d.check == "file-unreadable")

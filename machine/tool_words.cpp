@@ -167,7 +167,7 @@ void read_gauge(const std::string& words, ToolProposal& tool) {
     tool.diameter_mm = size_of(m[1].str());
 }
 
-/// What the job's tool types leave out of these words.
+/// What the job's tool types leave out of a cutter with these words, as a sentence; empty: nothing.
 std::string doubt_of(const std::string& words) {
   if (has(words, "CORNER ROUND")) return "type \"general\" describes its profile (docs/cutters.md)";
   if (has(words, "DOVETAIL") || has(words, "T-SLOT") || has(words, "T SLOT")) return "its undercut is left out";
@@ -235,7 +235,7 @@ void read_corner(const std::string& words, bool inch, ToolProposal& tool) {
     if (!tool.corner_radius_mm) tool.corner_radius_mm = find_size(words, pattern, inch);
 }
 
-/// What sticks out, what cuts, and what is above it.
+/// Reads overhang, length of the flutes, and shank.
 void read_lengths(const std::string& words, bool inch, ToolProposal& tool) {
   tool.overhang_mm = find_size(
       words, R"(\b(?:STICK[ -]?OUT|OVERHANG|OHL|PROJECTION|EXTENSION|AUSKRAG\w*|AUSSPANN\w*)\s*[-=:.]*\s*NUM)", inch);

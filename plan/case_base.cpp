@@ -144,7 +144,7 @@ double similarity(const CaseBase& base, const CaseContent& a, const CaseContent&
 
 namespace {
 
-/// Of the usual or fast speed of the materials' groups; 1 where one is not known.
+/// Ratio of the usual or fast speeds of the materials' groups; 1 where one is not known.
 double speed_factor(const CaseBase& base, const CaseContent& query, const CaseContent& from) {
   const MaterialGroup *to = base.group_of(query.material), *of = base.group_of(from.material);
   if (to == nullptr || of == nullptr) return 1;

@@ -30,7 +30,7 @@ struct Patch {
   SolidBounds bounds;
   double at_mm = 0;                  ///< planes: mean coordinate
   bool smooth_all_round = true;      ///< no edge of it is sharp
-  double largest_neighbour_mm2 = 0;  ///< of the triangles round it
+  double largest_neighbour_mm2 = 0;  ///< largest of the triangles round it
   double turn = 0;                   ///< upright walls: > 0 where the facets turn towards each other
   /// Upright walls: coordinates in x and in y at which they go over smoothly into a wall that runs along that axis.
   std::array<std::vector<double>, 2> goes_over_mm{};
@@ -252,10 +252,10 @@ class CornerFinder {
   const TriangleSolid& solid_;
   const MeshEdges& edges_;
   const std::vector<bool>& of_hole_;
-  std::vector<double> widths_;        ///< of each triangle's facet
+  std::vector<double> widths_;        ///< width of each triangle's facet
   std::vector<std::uint32_t> chain_;  ///< triangle to another one of its facet or round wall
-  std::vector<std::uint32_t> facet_;  ///< of each corner: triangle of the narrower one
-  std::vector<bool> among_facets_;    ///< of each corner: no wall beside it
+  std::vector<std::uint32_t> facet_;  ///< for each corner the triangle of the narrower facet
+  std::vector<bool> among_facets_;    ///< for each corner: no wall beside it
   std::vector<InnerCorner> out_;
 };
 

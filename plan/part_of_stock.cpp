@@ -278,7 +278,7 @@ void take_alike(Loops& loops, const Loops& others, double within_mm) {
   }
 }
 
-/// Of holes with one middle one, from the top of the highest to the tip of the lowest, as wide as the widest.
+/// Joins holes with one middle to one, from the top of the highest to the tip of the lowest, as wide as the widest.
 std::vector<Hole> as_wells(const std::vector<Hole>& holes) {
   std::vector<Hole> out;
   for (const Hole& h : holes) {

@@ -176,7 +176,7 @@ void read_tables(TomlTable& top, const fs::path& folder, PlanInput& plan, Diagno
   if (plan.setups.empty()) plan.setups.push_back({"set-up 1"});
 }
 
-/// Of the machine, else 10 s.
+/// Tool change time of the machine, else 10 s.
 double tool_change_s(TomlTable& top, const machine::Machine& machine) {
   if (const auto given = top.optional_number("tool_change_s", kNotNegative)) return *given;
   const machine::ToolChange& change = machine.tool_change;

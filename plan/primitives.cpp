@@ -29,7 +29,7 @@ struct Region {
   std::vector<Column> columns;  ///< ascending; of a free-form one in its layer
   int from = 0, to = 0;         ///< layers [from, to)
   bool free_form = false;
-  std::vector<CellIndex> cells{};  ///< of a free-form one, ascending
+  std::vector<CellIndex> cells{};  ///< cells of a free-form primitive, ascending
 };
 
 bool is_to_go(CellKind kind) {
@@ -231,7 +231,7 @@ class LargestRectangles {
   std::vector<std::vector<bool>> left_;
 };
 
-using Rectangles = std::vector<Rectangle>;  ///< of one primitive
+using Rectangles = std::vector<Rectangle>;  ///< rectangles of one primitive
 
 /// Joins rectangles that are narrower than the smallest mill to one that lies along them.
 class SliverJoiner {

@@ -145,7 +145,7 @@ std::size_t refused(const InputError& error) {
   return 0;
 }
 
-/// What stands before each finishing operation, as files.
+/// Stock before each finishing operation, as files.
 class SavedStocks {
  public:
   explicit SavedStocks(const PlannedDivision& plan) {
@@ -187,7 +187,7 @@ copymill::CopyResult copy_what_fits(const PlanInput& input, const machine::Job& 
   }
 }
 
-/// What the emitted text does besides cutting; a plan is a proposal, so that nothing of it is an error.
+/// Adds warnings about what the emitted text does besides cutting; a plan is a proposal, so that none is an error.
 void add_warnings(const machine::Job& job, const std::string& name, const std::string& text,
                   const removal::Stock& blank, Diagnostics& diagnostics) {
   Diagnostics found;

@@ -13,7 +13,7 @@ struct Polygon {
   void add(const Vec3& p) { points[count++] = p; }
 };
 
-/// What lies on the side of greater (sign > 0) or less coordinates.
+/// The material on the side of greater (sign > 0) or less coordinates.
 Polygon clipped(const Polygon& from, int axis, double at, double sign) {
   Polygon out;
   for (std::size_t i = 0; i < from.count; ++i) {

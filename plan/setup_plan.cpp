@@ -60,7 +60,7 @@ Blank read_blank(const PlanInput& input) {
           .tolerance_mm = kHalf * input.simulation.voxel_mm};
 }
 
-/// What the best plans of earlier set-ups machine, seen from a later one.
+/// Volume that the best plans of earlier set-ups machine, seen from a later one.
 class Machined {
  public:
   Machined(const SetupPlan& earlier, const Eigen::Matrix3d& later_turn)

@@ -23,7 +23,7 @@ bool alike(const std::vector<double>& a, const std::vector<double>& b) {
   return std::ranges::equal(a, b, [&](double u, double v) { return std::abs(u - v) < kSame_mm; });
 }
 
-/// Of many small areas the coordinates where they gather.
+/// Coordinates at which many small areas gather.
 std::vector<AxisPlane> gathered(std::vector<AxisPlane> all, double tolerance_mm, double least_mm2) {
   std::vector<AxisPlane> planes = joined(std::move(all), tolerance_mm);
   std::erase_if(planes, [&](const AxisPlane& p) { return p.area_mm2 < least_mm2; });

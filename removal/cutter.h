@@ -50,7 +50,7 @@ struct EnvelopeGrid {
     ProfilePoint profile;
     double width_mm = 0;  ///< db, arc length of the profile represented by the ring
     double lag_rad = 0;
-    float sine = 0, cosine = 0;  ///< of the profile's normal angle
+    float sine = 0, cosine = 0;  ///< sine and cosine of the profile's normal angle
   };
   std::vector<Ring> rings;
 
@@ -62,7 +62,7 @@ struct EnvelopeGrid {
   /// A group of neighbouring points, for culling.
   struct Patch {
     Vec3 centre_from_tip = Vec3::Zero(), normal = Vec3::Zero();
-    double radius_mm = 0;      ///< of a sphere around the centre that contains all points
+    double radius_mm = 0;      ///< radius of a sphere around the centre that contains all points
     double normal_spread = 0;  ///< largest |n - normal| of its points
     int ring_from = 0, ring_to = 0, step_from = 0, step_to = 0;  ///< half open
   };

@@ -11,7 +11,7 @@ namespace camber::removal {
 
 namespace {
 
-/// Of `pairs` pairs the largest sum of squares.
+/// The largest sum of squares among `pairs` pairs of values.
 CAMBER_VECTOR_CLONES
 float largest_square(const float* values, std::size_t pairs) {
   constexpr std::size_t kLanes = 8;

@@ -51,9 +51,9 @@ struct DeflectionTable {
   }
   std::size_t nodes() const { return node_height_mm.size(); }
   std::size_t row_size() const { return whole_size() * (parts ? 2 : 1); }
-  /// Of a row, without what of it is the part's.
+  /// Values of a row without the part's share.
   std::size_t whole_size() const { return lateral_size() + (axial ? static_cast<std::size_t>(steps) * 2 : 0); }
-  /// Of a row, without its axial deflections.
+  /// Values of a row without its axial deflections.
   std::size_t lateral_size() const { return nodes() * static_cast<std::size_t>(steps) * 2; }
   /// Row of stamp k of the stretch; -1 is the stamp before it.
   float* row(std::ptrdiff_t k) { return values.data() + static_cast<std::size_t>(k + 1) * row_size(); }

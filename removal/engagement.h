@@ -157,7 +157,7 @@ double swept_chip_volume_mm3(const EnvelopeGrid& envelope, std::span<const ChipS
 /// span is valid during the call only.
 using ChipSink = std::function<void(std::size_t k, std::span<const ChipBlock>)>;
 
-/// What becomes of the stamps when not all of them are read. Functions are called by several threads at once.
+/// Callbacks for a stretch of which not every stamp is read. Functions are called by several threads at once.
 struct SparseChipSink {
   ChipSink read;                                 ///< the chips of some stamps, at most once each
   std::function<bool(std::size_t k)> must_read;  ///< whatever its neighbours are like
@@ -209,7 +209,7 @@ constexpr float kNear_mm = 0.1f;
 /// A chip sample of a deflected cutter, and its change with the deflection.
 struct DeflectedChipSample {
   ChipSample chip;     ///< its thickness is the smaller of the next two, negative for a point outside the material
-  float depth_mm = 0;  ///< of the stock below the point, against the normal
+  float depth_mm = 0;  ///< thickness of stock below the point, against the normal
   float cap_mm = 0;    ///< motion bound; the largest depth that counts where the depth is smaller
   std::array<float, 3> deeper{};  ///< d(depth)/d(deflection), by x, y and z
 };
@@ -294,7 +294,7 @@ class StepEngager {
   void approach(const Vec3& tip_mm, int most);
   /// Cuts a stamp. The stock is written lazily, tile by tile.
   void cut(const Stamp& stamp);
-  /// As Stock::distance_mm, of the stock as it stands.
+  /// Distance to the stock as it stands (Stock::distance_mm).
   double distance_mm(const Vec3& place_mm) const;
   /// Writes all pending tiles to the stock and goes on. Returns the volume removed since the last time, mm^3.
   double flush();

@@ -26,7 +26,7 @@ TriangleMesh read_closed_stl(const std::string& path);
 /// Aanaes, "Signed distance computation using the angle weighted pseudonormal", 2005).
 class PartMesh {
  public:
-  /// What read_closed_stl throws.
+  /// Throws what read_closed_stl throws.
   explicit PartMesh(const std::string& stl_path);
   explicit PartMesh(const TriangleMesh& closed);
   ~PartMesh();
@@ -49,12 +49,12 @@ class CutterPlaces {
   void add(std::int32_t first_id, const CutterShape& shape, std::span<const Stamp> stamps);
   bool empty() const { return runs_.empty(); }
   bool knows(std::int32_t id) const { return find(id) != nullptr; }
-  /// Of a known stamp's envelope, mm, negative inside the cutter.
+  /// Distance to a known stamp's envelope, mm, negative inside the cutter.
   double distance_mm(std::int32_t id, const Vec3& point) const;
   Vec3 gradient(std::int32_t id, const Vec3& point) const;
   struct Depth {
     std::int32_t id;
-    double depth_mm;  ///< of the point inside that cutter
+    double depth_mm;  ///< depth of the point inside that cutter
   };
   /// Local search from a known stamp along its run: the stamp in which the point lies deepest.
   Depth deepest_from(std::int32_t id, const Vec3& point) const;
@@ -63,8 +63,8 @@ class CutterPlaces {
   struct Run {
     std::int32_t first_id;
     CutterShape shape;
-    std::vector<Vec3> tips;       ///< of upright stamps
-    std::vector<ToolPose> poses;  ///< of others
+    std::vector<Vec3> tips;       ///< places of upright stamps
+    std::vector<ToolPose> poses;  ///< poses of other stamps
     std::size_t size() const { return tips.size() + poses.size(); }
     ToolPose pose(std::size_t k) const { return poses.empty() ? ToolPose{tips[k]} : poses[k]; }
     ToolPose pose_of(std::int32_t id) const { return pose(static_cast<std::size_t>(id - first_id)); }
@@ -78,13 +78,13 @@ struct SurfacePoint {
   Vec3 crossing_mm = Vec3::Zero();   ///< where a grid line crosses the target's field, beside it
   Vec3 normal = Vec3::UnitZ();       ///< outward, unit
   double error_mm = 0;               ///< machined minus target along the normal; positive: excess material
-  double contour_mm = 0;             ///< of it, what servo lag and corner rounding do to the target program
-  double area_mm2 = 0;               ///< of the target's surface represented by the point
+  double contour_mm = 0;             ///< share of error_mm that servo lag and corner rounding cause
+  double area_mm2 = 0;               ///< area of the target's surface that the point represents
   std::int32_t target_stamp = -1;    ///< stamp of the target sweep that generated it
   std::int32_t machined_stamp = -1;  ///< stamp that last cut the machined field there; -1: none
-  /// Of contour_mm: what the axes' lag and the control's path tolerance do by themselves (simulate/contour.h).
+  /// Shares of contour_mm that the axes' lag and the control's path tolerance cause by themselves (simulate/contour.h).
   float lag_mm = 0, path_tolerance_mm = 0;
-  float part_mm = 0;  ///< of error_mm, what the part's own deflection does
+  float part_mm = 0;  ///< share of error_mm that the part's own deflection causes
   bool valid = true;  ///< false: left where the model does not hold (simulate/validity.h); in no figure
 };
 
@@ -119,14 +119,14 @@ ErrorFigures error_figures(const std::vector<double>& error, const std::vector<d
 /// Distribution of the area over the error.
 struct ErrorSpread {
   static constexpr std::array<double, 9> kFractions{0.01, 0.05, 0.10, 0.25, 0.50, 0.75, 0.90, 0.95, 0.99};
-  std::array<double, kFractions.size()> percentile{};  ///< of the signed error, by area
+  std::array<double, kFractions.size()> percentile{};  ///< percentiles of the signed error, weighted by area
   double bin_from = 0, bin_width = 0;                  ///< in the unit of the values
   std::vector<double> bin_area_mm2;                    ///< their sum is the whole area
 };
 /// Forty bins or fewer of a round width (1, 2 or 5 times a power of ten) from the minimum to the maximum error.
 ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area_mm2);
 
-/// What cutters have left at a point of a SurfaceMap.
+/// The error that the cutters have left at a point of a SurfaceMap.
 struct PointMark {
   double error_mm = 0;
   std::uint32_t point = 0;  ///< index in SurfaceMap::points

@@ -26,7 +26,7 @@ class CutterBottom {
 
  private:
   double radius_ = 0, corner_ = 0, rise_ = 0;
-  std::vector<float> table_;  ///< of general cutters, over the distance from the axis
+  std::vector<float> table_;  ///< height of the lower side over the distance from the axis; general cutters alone
 };
 
 class HeightMap {
@@ -50,15 +50,15 @@ class HeightMap {
   bool undercut() const { return undercut_; }
   /// Material above min_mm().z(), mm^3.
   double volume_mm3() const;
-  /// Of the surface that lies lower than max_mm().z(), steps between cells included, mm^2.
+  /// Area of the surface that lies lower than max_mm().z(), steps between cells included, mm^2.
   double cut_area_mm2() const;
 
-  /// What a cutter at one place takes away.
+  /// The material that a cutter takes away at one place.
   struct Cut {
     double volume_mm3 = 0;
-    double area_mm2 = 0;      ///< of the cells that are lowered
+    double area_mm2 = 0;      ///< area of the cells that are lowered
     double deepest_mm = 0;    ///< largest lowering of a cell
-    double above_tip_mm = 0;  ///< of the highest material that is removed
+    double above_tip_mm = 0;  ///< height of the highest material that is removed
   };
   Cut cut(const CutterBottom& cutter, const Vec3& tip);
   /// A cell in which material stands above the cutter's lower side; its top.

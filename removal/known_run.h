@@ -18,12 +18,12 @@ using TipSteps = std::array<SparseList<std::int32_t>, 3>;
 /// A run whose stamps are all upright.
 struct KnownRun {
   std::span<const Stamp> stamps;                      ///< by number; those that are not kept may not be read
-  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();  ///< of all its tips
-  std::shared_ptr<const TipSteps> tips{};             ///< of those that are kept
+  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();  ///< bounding box of all its tips
+  std::shared_ptr<const TipSteps> tips{};             ///< positions of the stamps that are kept
 
   /// kept: of `stamps`, ascending; what stamps within reach of a piece that is cut have.
   KnownRun(std::span<const Stamp> stamps, const Vec3& min_mm, const Vec3& max_mm, std::span<const ListRange> kept);
-  /// Of a run that is in memory; its stamps must be upright.
+  /// A run that is in memory as a whole. Precondition: its stamps are upright.
   explicit KnownRun(std::span<const Stamp> stamps);
 };
 

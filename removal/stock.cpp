@@ -45,7 +45,7 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// Of the uppermost layer where a layer below it has the value.
+/// Stands in the uppermost layer where a layer below has the value.
 constexpr float kBelow = std::numeric_limits<float>::max();
 constexpr std::size_t kMaxBelow = 2;
 
@@ -53,7 +53,7 @@ constexpr std::size_t kMaxBelow = 2;
 /// nothing. Does not change once it is made; may be read by many threads.
 class RepeatedLeaves {
  public:
-  /// What the field has at the place of a leaf that was taken out.
+  /// Stands in the field at the place of a leaf that was taken out.
   static constexpr float kHere = std::numeric_limits<float>::lowest();
 
   /// Takes every leaf whose values and active voxels stand at least twice in the tree out of it.
@@ -68,7 +68,7 @@ class RepeatedLeaves {
   std::size_t memory_bytes() const;
 
  private:
-  /// Of a leaf: 21 bits an axis, 16 million voxels.
+  /// Key of a leaf's place: 21 bits an axis, 16 million voxels.
   static std::uint64_t place(const openvdb::Coord& at) {
     const auto bits = [](openvdb::Int32 i) {
       return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i >> Leaf::LOG2DIM) & 0x1fffffu);
@@ -77,7 +77,7 @@ class RepeatedLeaves {
   }
 
   std::vector<std::unique_ptr<const Leaf>> leaves_;
-  std::unordered_map<std::uint64_t, std::int32_t> numbers_;  ///< of the leaf at a place, by place()
+  std::unordered_map<std::uint64_t, std::int32_t> numbers_;  ///< number of the leaf, by place()
 };
 
 /// Calls f(origin) for every place at which a tree has RepeatedLeaves::kHere.
@@ -150,7 +150,8 @@ std::size_t RepeatedLeaves::memory_bytes() const {
          leaves_.size() * (sizeof(Leaf) + Leaf::SIZE * sizeof(float));
 }
 
-/// What copies share, which does not change while they do. Leaves that stand in it more than once are in `repeated`.
+/// Layer that copies share and that does not change while they do. Leaves that stand in it more than once are in
+/// `repeated`.
 struct SharedLayer {
   openvdb::FloatGrid::Ptr grid;
   std::shared_ptr<const RepeatedLeaves> repeated;
@@ -184,7 +185,7 @@ class LayerReader {
   struct Found {
     const Leaf* leaf;  ///< null: `constant` throughout
     float constant;
-    bool own;  ///< of the uppermost layer
+    bool own;  ///< found in the uppermost layer
   };
   Found leaf(const Coord& origin) const {
     if (const Leaf* node = own_.probeConstLeaf(origin)) return {node, 0, true};
@@ -485,7 +486,7 @@ RowFacts row_facts(const float* d, const std::int32_t* s, float band) {
 /// A leaf's part of a tile that is stored.
 struct StoredLeaf {
   Coord origin;
-  const float* distance;  ///< of its first voxel in the tile
+  const float* distance;  ///< distance at its first voxel in the tile
   const std::int32_t* stamp;
   RowFacts facts{};
   bool same_below = false;  ///< as a shared leaf has it: nothing is stored

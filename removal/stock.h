@@ -58,7 +58,7 @@ class Stock {
     ~Probe();
     /// The value of the voxel nearest to a point, clipped to the band.
     float nearest(const Vec3& point) const;
-    /// As Stock::distance_mm.
+    /// See Stock::distance_mm.
     double distance_mm(const Vec3& point) const;
 
    private:
@@ -191,12 +191,12 @@ struct Region {
 class StockPart {
  public:
   StockPart() = default;
-  /// Of `cut`, which was `before`; both differ in the tiles that `reach` meets alone. `stamps`: of its surface only
+  /// The part of `cut` that differs from `before`, in tiles that `reach` meets. `stamps`: of its surface only
   /// what these have set last (half open); not given: all that has a stamp.
   StockPart(const Stock& cut, const Stock& before, const Region& reach,
             std::optional<std::array<std::int32_t, 2>> stamps = {});
 
-  /// What parts have cut together: joining it is as joining them in their order.
+  /// The union of several parts; joining it gives what joining them in their order gives.
   explicit StockPart(std::span<const StockPart* const> parts);
 
   std::size_t tiles() const { return tile_.size(); }
@@ -224,7 +224,7 @@ class StockPart {
     Index3 index{};
     std::int32_t unused = 0;  ///< no byte of a file is left to chance
     Mask cut, air;
-    std::uint64_t first = 0;  ///< of its cut voxels in the lists below
+    std::uint64_t first = 0;  ///< index of its first cut voxel in the lists below
   };
 
   void add_joined(const Index3& tile, std::span<const std::pair<const StockPart*, std::size_t>> parts);
@@ -238,7 +238,7 @@ class StockPart {
 /// region meets. Both have the same voxels and box.
 double largest_difference_mm(const Stock& a, const Stock& b, const Region& region);
 
-/// What parts cut together, as StockPart(span) of all of them in the order in which they were added. Of n parts at most
+/// Collects the union of parts, equal to StockPart(span) of all of them in the order of adding. Of n parts at most
 /// about log2(n) joined ones are in memory, and each part is joined about as often.
 class JoinedParts {
  public:

@@ -24,7 +24,7 @@ struct Stamp {
   double t_s = 0;
   ToolPose pose;
   Vec3 feed_per_tooth_mm = Vec3::Zero();  ///< motion since the stamp before, one tooth passing earlier
-  double fraction = 0;                    ///< of `move`'s length at which the tip stands, 0 to 1
+  double fraction = 0;                    ///< share of `move`'s length at which the tip stands, 0 to 1
   bool first = false;                     ///< after a rapid, a dwell or a tool change: no previous tooth passing
   std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
 };
@@ -39,13 +39,13 @@ struct ToothMotion {
 
   ToothMotion() = default;
   ToothMotion(const Vec3& tip, const Vec3& turn = Vec3::Zero()) : tip_mm(tip), turn_rad(turn) {}
-  /// Of a point of the tool, from the tip.
+  /// Motion of the point p of the tool, given from the tip.
   Vec3 at(const Vec3& p) const {
     const Vec3& w = turn_rad;
     return tip_mm + Vec3(w.y() * p.z() - w.z() * p.y(), w.z() * p.x() - w.x() * p.z(), w.x() * p.y() - w.y() * p.x());
   }
 };
-/// Of stamps[k]; that of a first stamp turns as the next one does.
+/// Motion of stamps[k] in the tool's frame; the first stamp of a run turns as the next one does.
 ToothMotion motion_in_tool(std::span<const Stamp> stamps, std::size_t k);
 
 /// Precondition of code with "upright" in its name or namespace.
@@ -155,7 +155,7 @@ class StampBuilder {
   std::vector<HoleMove> holes_;
   const kinematics::PartPath* rotary_;
   StampSink sink_;
-  feedmodel::ToolPlace tool_, last_tool_;  ///< of `rotary`: of this sample and of the last one
+  feedmodel::ToolPlace tool_, last_tool_;  ///< place of the tool on `rotary` at this sample and at the last one
   feedmodel::PathTracker tracker_;
   StampPath path_;
   feedmodel::TimedSample last_;
@@ -163,7 +163,7 @@ class StampBuilder {
   double next_s_ = 0;
   std::uint32_t next_move_ = 0;  ///< whose beginning was not met yet
   std::uint32_t next_hole_ = 0;  ///< move whose hole, if any, is not finished yet
-  double hole_fraction_ = 0;     ///< of next_hole_'s length, at the last sample
+  double hole_fraction_ = 0;     ///< share of next_hole_'s length that is done at the last sample
 };
 
 /// A stamp and its number in the path; of `run` the count is not known yet.

@@ -23,7 +23,7 @@ namespace camber::workpiece {
 namespace {
 
 constexpr std::size_t kLoads = 8;        ///< solved side by side
-constexpr std::size_t kFewBodies = 200;  ///< of the coarsest level, solved directly
+constexpr std::size_t kFewBodies = 200;  ///< at most this many on the coarsest level, solved directly
 constexpr std::int32_t kAside = 3;       ///< nodes that become one body, along each axis
 constexpr int kSmoothing = 3;            ///< degree of the polynomial
 constexpr double kSmoothedRange = 16;    ///< largest eigenvalue against the least that is smoothed
@@ -180,9 +180,9 @@ class Groups {
 
 Place coarser(const Place& p) { return {p[0] / kAside, p[1] / kAside, p[2] / kAside}; }
 
-/// What is rigid on the next level.
+/// Groups of nodes that are rigid on the next level.
 struct Bodies {
-  std::vector<std::int32_t> of;  ///< of each node
+  std::vector<std::int32_t> of;  ///< number of the group of each node
   std::vector<Vec3> middle;      ///< in cells of the finest level
   std::vector<Place> place;      ///< in steps of kAside
 };
@@ -239,7 +239,7 @@ struct Elastic::Impl {
     std::size_t size = 3;  ///< unknowns of a node
     std::size_t nodes = 0;
     std::vector<Vec3> middle;
-    BlockRows matrix;             ///< of all but the finest
+    BlockRows matrix;             ///< matrix of all levels but the finest
     std::vector<double> inverse;  ///< [nodes][size][size], of the diagonal's blocks
     std::vector<std::int32_t> body;
     std::vector<Vec3> arm;  ///< from the body's middle to the node

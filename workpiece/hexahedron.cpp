@@ -17,7 +17,7 @@ constexpr std::array<Power, 8> kPowers{
 
 int sign_of(int node, int axis) { return (node >> axis & 1) != 0 ? 1 : -1; }
 
-/// Of the shape function of a node, (1 + s_x x)(1 + s_y y)(1 + s_z z) / 8.
+/// Coefficient of x^p y^q z^r in the shape function of a node, (1 + s_x x)(1 + s_y y)(1 + s_z z) / 8.
 double coefficient(int node, const Power& p) {
   return (p.x ? sign_of(node, 0) : 1) * (p.y ? sign_of(node, 1) : 1) * (p.z ? sign_of(node, 2) : 1) / 8.0;
 }

@@ -88,7 +88,7 @@ class Filler {
   Filler(const removal::Stock& stock, const SolidOptions& options, int voxels)
       : stock_(stock), options_(options), voxels_(voxels), lowest_(lowest_voxel(stock)) {}
 
-  /// Of the cell that begins with this voxel.
+  /// Filling of the cell that begins with this voxel.
   Filling of(const removal::Index3& first, CellVoxels& distances) const {
     distances.read(first);
     Filling out;
@@ -119,7 +119,7 @@ class Filler {
 
  private:
   bool held(const Vec3& voxel) const { return options_.held && options_.held(voxel * stock_.voxel_mm()); }
-  /// What is held does not bend: its sides to the rest hold that, and a cell that is held in part bends from there on.
+  /// Held material does not bend: its sides to the rest hold that, and a cell that is held in part bends from there on.
   void add_held_sides(const Vec3& voxel, const CellVoxels& distances, const Eigen::Vector3i& at, Moments& out) const {
     const double width = 2.0 / voxels_;
     for (int axis = 0; axis < 3; ++axis)
@@ -139,7 +139,7 @@ class Filler {
   int lowest_;  ///< voxel with material, along z
 };
 
-/// What cells have in common that are as stiff, rounded.
+/// Rounded moments, the same for cells that are equally stiff.
 std::array<std::int32_t, 54> key_of(const Filling& f) {
   constexpr double kPerUnit = 1e6;
   std::array<std::int32_t, 54> out;

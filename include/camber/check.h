@@ -25,7 +25,7 @@ struct ToolUse {
   std::optional<Box> cutting{};  ///< extents of its cutting moves
 };
 
-/// What is written beside the figures. Files: empty: none.
+/// Files that are written beside the figures; empty: none.
 struct CheckOptions {
   std::string page{};     ///< file: page with a picture of the path; also where an axis of a machine leaves its travel
   std::string path{};     ///< file: the path's points as arrays for pictures; of a job the first program's

@@ -16,7 +16,7 @@ struct CompensateOptions {
   std::string measured{};                  ///< points measured on a part, CSV; empty: none
   std::string measured_program{};          ///< program that the measured part was cut with; empty: the job's program
   std::vector<double> check_voxels_mm{};   ///< predict both programs again on these grids
-  /// What may change, instead of [compensation] levers: "shift" and of "feed" and "passes" those wanted; empty: the
+  /// Levers in place of [compensation] levers: "shift" and of "feed" and "passes" those wanted; empty: the
   /// job's.
   std::vector<std::string> levers{};
   /// Limit of the levers feed and passes ([compensation] levers): the least error within so much more machine time,
@@ -84,7 +84,7 @@ struct CompensateResult {
   std::string page{};                             ///< the same, as `camber compensate --report` writes them
   bool written = false;                           ///< there is an output, and the program is in it
   std::vector<Diagnostic> unwritten{};            ///< see CompensateOptions::throw_if_unwritten
-  std::vector<std::string> unknown_parameters{};  ///< of CompensateOptions::uncertainty; ignored
+  std::vector<std::string> unknown_parameters{};  ///< names in CompensateOptions::uncertainty that are ignored
 };
 
 /// Throws InputError, BeyondModel, Cancelled.

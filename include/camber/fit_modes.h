@@ -11,7 +11,7 @@ inline namespace v0 {
 
 struct FitModesOptions {
   int tool = 1;                   ///< number of the tool in FitModesResult::tables
-  std::string direction = "x";    ///< of the tap: "x" or "y"; "xy": the tool is alike in both
+  std::string direction = "x";    ///< direction of the tap: "x" or "y"; "xy": the tool is alike in both
   std::optional<int> modes{};     ///< number of modes; not given: by the response itself
   double from_hz = 0, to_hz = 0;  ///< band of the fit; 0: all
 };

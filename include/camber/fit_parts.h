@@ -25,7 +25,7 @@ struct FittedPartsParameter {
 
 struct FitPartsResult {
   std::vector<FittedPartsParameter> parameters{};
-  double rms_um = 0;  ///< of what was fitted
+  double rms_um = 0;  ///< rms of the fitted features
   bool converged = false;
   std::string message{};  ///< how the fit ended
   /// Files that `camber fit-parts` writes to its folder: machine.toml, tools.toml, material.toml, report.html.

@@ -29,7 +29,7 @@ class CAMBER_API Job {
   /// Greater than zero, else std::invalid_argument.
   void set_voxel_mm(double voxel_mm);
 
-  /// What nobody gave: a sentence for each value that is only assumed; results begin with them.
+  /// A sentence for each value that nobody gave and that is only assumed; results begin with them.
   std::vector<std::string> assumed() const;
 
   struct Impl;
@@ -49,7 +49,7 @@ CAMBER_API Job read_unprogrammed_job(const std::string& path);
 
 /// A job, and its programs in their order, one or more. Each begins on what the one before it has left.
 struct JobOfPrograms {
-  Job job;  ///< of the first program
+  Job job;  ///< job of the first program
   std::vector<std::string> programs{};
 
   /// The job of a program, counted from 0; `stock`: the stock.vdb that the program before it has left; empty: the job's

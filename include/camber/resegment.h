@@ -30,7 +30,7 @@ struct ContourError {
 
 struct ResegmentResult {
   std::string program{};     ///< text of the new program
-  bool within_limit = true;  ///< of the contour error; false: this is the closest
+  bool within_limit = true;  ///< the contour error is; false: this is the closest
   double limit_um = 0;
   ProgramCounts before{}, after{};
   ContourError contour_before{}, contour_after{};
@@ -60,7 +60,7 @@ struct RasterOptions {
 
 struct RasterResult {
   std::string program{};           ///< text
-  bool within_limit = true;        ///< of the contour error; false: this is the closest
+  bool within_limit = true;        ///< the contour error is; false: this is the closest
   bool scallops_too_high = false;  ///< where the surface is steep across the rows
   double limit_um = 0;
   double largest_scallop_mm = 0, closest_rows_mm = 0;

@@ -19,7 +19,7 @@ struct StudyCase {
   std::string json{};                 ///< the case's figures: what study.json reads
   std::vector<std::string> values{};  ///< one per key
   bool done = false;                  ///< page and figures are there
-  std::string command_line{};         ///< of its command, for a shell
+  std::string command_line{};         ///< its command for a shell
 };
 
 struct Study {

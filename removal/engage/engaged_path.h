@@ -18,7 +18,7 @@ struct EngagedRun {
   const EnvelopeGrid& envelope;
   std::span<const Stamp> stamps;
   std::int32_t first_id;
-  const KnownRun* known = nullptr;  ///< of the stamps, where they are one run
+  const KnownRun* known = nullptr;  ///< run that the stamps belong to, where they are one run
 };
 
 /// True where the glance at k lies on the line between those at a and b.

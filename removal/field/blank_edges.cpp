@@ -48,14 +48,14 @@ bool is_near(const float* lowest, float voxel_mm) {
   return least < kOutside * voxel_mm && most > -kInside * voxel_mm;
 }
 
-/// What is around a cell in its tile.
+/// Copies the values around a cell of a tile.
 void copy_around(const float* lowest, float* out) {
   for (int i = 0; i < kAround; ++i)
     for (int j = 0; j < kAround; ++j)
       std::copy_n(lowest + Tile::offset(i - 1, j - 1, -1), kAround, out + around(i, j, 0));
 }
 
-/// What the voxels on one corner's side say.
+/// A face of the blank as the voxels on one corner's side have it.
 struct Corner {
   Vec3 place;  ///< voxels from the lowest
   double distance_mm;
@@ -104,7 +104,7 @@ bool is_one_face(const float* d, double voxel_mm) {
   return true;
 }
 
-/// What a voxel says, if it is that of a face.
+/// The face that a voxel belongs to, if any.
 std::optional<Corner> corner_at(const float* d, const std::array<int, 3>& at, double voxel_mm) {
   const Vec3 gradient = gradient_at(d, at, voxel_mm);
   const double length = gradient.norm();
@@ -136,7 +136,7 @@ std::vector<Corner> corners_of(const float* d, double voxel_mm, bool all) {
 /// Corners of one face.
 struct Group {
   Vec3 outwards = Vec3::Zero(), place = Vec3::Zero();
-  double distance_mm = 0, above = 0;  ///< of the first
+  double distance_mm = 0, above = 0;  ///< values of the first
   int count = 0;
 
   void add(const Corner& c) { outwards += c.outwards, place += c.place, distance_mm += c.distance_mm, ++count; }

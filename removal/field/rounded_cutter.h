@@ -21,7 +21,7 @@ struct RoundedCutter {
 
   /// A place in the meridian plane.
   struct Place {
-    Number outside;   ///< of the flat bottom's rim
+    Number outside;   ///< distance outside the flat bottom's rim
     Number below;     ///< the centre of the rounding
     Number length;    ///< from that centre, of what is outside and below
     Number distance;  ///< signed, negative inside the cutter

@@ -16,7 +16,7 @@ struct Settling {
   /// the deflection: there plain steps alternate between both sides, and smaller ones find the place between them.
   static constexpr int kPlainSteps = 5;
   static constexpr float share_of(int step) { return step < kPlainSteps ? 1.0f : step < 16 ? 0.3f : 0.1f; }
-  /// Of plain steps, each of which changes the place by a fraction of the one before it: the least such fraction that
+  /// Each plain step changes the place by a fraction of the step before it; this is the least such fraction that
   /// is believed.
   static constexpr float kTrustedFall = 0.05f;
 };

@@ -22,7 +22,7 @@
 namespace camber::removal {
 namespace {
 
-constexpr double kRounding_mm = 3e-4;  ///< of distances in single precision, within a metre
+constexpr double kRounding_mm = 3e-4;  ///< rounding of distances in single precision, within a metre
 constexpr int kBlock = 4;              ///< voxels a side of the cubes whose points are passed over together
 
 /// Points first ... first + count - 1 within `radius` of `centre`, `across` of it along the surface and `thick` above
@@ -31,9 +31,9 @@ struct Group {
   Vec3 centre = Vec3::Zero(), normal = Vec3::UnitZ();
   double radius = 0, across = 0, thick = 0;
   std::size_t first = 0, count = 0;
-  double highest = 0;  ///< of its points' errors
+  double highest = 0;  ///< largest of its points' errors
 
-  /// What a straight cutter must be as near as to reach one of the points, or one above it by its error, when
+  /// A straight cutter must be as near as this to reach one of the points, or one above it by its error, when
   /// deflected.
   double reach_mm() const { return std::max(highest, 0.0) + kRounding_mm; }
 };
@@ -86,7 +86,7 @@ class UprightTips {
     for (std::size_t k = 0; k < x_.size(); ++k)
       out[k] = static_cast<float>(shape.distance_mm((p - Eigen::Vector3f(x_[k], y_[k], z_[k])).cast<double>()));
   }
-  /// Of rounded cutters: see MarkKernels. `reach_mm`: of each, and whole vectors of them.
+  /// The cutters as MarkKernels has them; rounded cutters alone. `reach_mm`: of each, and whole vectors of them.
   upright::CutterLanes lanes(const CutterShape& shape, const std::vector<float>& reach_mm, bool lateral) const {
     return {static_cast<int>(x_.size()),
             x_.data(),
@@ -307,7 +307,7 @@ class UprightCloseStamps {
 
 struct SurfaceMap::Impl {
   std::vector<SurfacePoint> points;  ///< tile by tile
-  std::vector<float> left_mm;        ///< of the blank above each
+  std::vector<float> left_mm;        ///< height of the blank above each
   std::vector<TilePoints> tiles;
   double band_mm = 0;
 

@@ -63,7 +63,7 @@ class Around {
     }
     return sum;
   }
-  /// Of the nearest voxel.
+  /// Stamp of the nearest voxel.
   std::int32_t stamp(const Vec3& p) const {
     const Vec3 g = p / voxel_ - first_;
     return b_.target_stamp[Block::at(static_cast<int>(std::lround(g.x())), static_cast<int>(std::lround(g.y())),
@@ -280,7 +280,7 @@ class Patch {
     sides_ = {size[0] * across, size[1] * other};
     area_mm2_ = size.prod();
   }
-  /// What the point counts for: the points of all three axes cover the surface sum n_a^2 = 1 times.
+  /// Area that the point stands for: the points of all three axes cover the surface sum n_a^2 = 1 times.
   double area_mm2(double n_axis) const { return area_mm2_ * std::abs(n_axis) * (open_ ? std::abs(n_axis) : 1.0); }
   /// A place in it, from its point; shares from -0.5 to 0.5.
   Vec3 place(const Vec2& fraction) const {

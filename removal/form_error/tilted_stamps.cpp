@@ -7,7 +7,7 @@
 namespace camber::removal {
 namespace {
 
-constexpr double kRounding_mm = 3e-4;  ///< of distances in single precision
+constexpr double kRounding_mm = 3e-4;  ///< rounding of distances in single precision
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 }  // namespace

@@ -56,7 +56,7 @@ class TiltedMarks {
 
   const TiltedStamps& stamps_;
   MarkQueue queue_;
-  std::vector<std::size_t> first_;  ///< of each point: the stamp that goes deepest where it is straight
+  std::vector<std::size_t> first_;  ///< for each point the stamp that goes deepest where it is straight
 };
 
 }  // namespace camber::removal

@@ -143,9 +143,9 @@ class NominalBuilder {
   std::size_t count_ = 0;
   Stamp newest_;  ///< that was taken
   bool open_ = false;
-  Place at_;                ///< of the last stamp, or a vertex that needed none
+  Place at_;                ///< place of the last stamp, or of a vertex that needed none
   std::uint32_t next_ = 0;  ///< moves before this one are covered
-  Stamp last_;              ///< of the axes
+  Stamp last_;              ///< last stamp of the axes
 };
 
 }  // namespace
@@ -153,7 +153,7 @@ class NominalBuilder {
 struct NominalFollower::Impl {
   TakeNominal take;
   NominalBuilder builder;
-  std::uint32_t moves;  ///< of the program
+  std::uint32_t moves;  ///< moves of the program
   std::optional<std::size_t> run_from{};
 
   Impl(const nc::Interpretation& program, const std::vector<bool>& selected, const kinematics::PartPath* rotary,

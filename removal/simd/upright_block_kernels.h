@@ -8,7 +8,7 @@ namespace camber::removal::upright {
 /// Envelope points side by side, eight a block (removal/engagement.h).
 struct BlockPoints {
   const float *x, *y, *z, *nx, *ny, *nz, *cos_phi, *sin_phi, *k1, *k2;
-  const float* wall_half;  ///< of the ring's width (removal/engage/upright/level_faces.h), mm
+  const float* wall_half;  ///< half the ring's width (removal/engage/upright/level_faces.h), mm
 };
 
 /// The blocks: their points lie around the centre, with normals that differ from the mean one by no more than `spread`.
@@ -27,8 +27,8 @@ struct BlockBounds {
 
 /// Tiles with numbers. Tile number 0 is air, for what has none.
 struct ArenaView {
-  const float* distance;      ///< of tile 0
-  const std::int32_t* stamp;  ///< of tile 0
+  const float* distance;      ///< values of tile 0
+  const std::int32_t* stamp;  ///< values of tile 0
   std::int32_t stride;        ///< from one tile to the next, values
   const std::int32_t* slot;   ///< [n[0]][n[1]][n[2]]
   std::int32_t n[3];
@@ -38,7 +38,7 @@ struct ArenaView {
 /// A stamp in the arena.
 struct StampPlace {
   std::int32_t base[3];  ///< voxel below the tip, from the first of the arena
-  float fraction[3];     ///< of the tip in its voxel, voxels
+  float fraction[3];     ///< place of the tip in its voxel, voxels
   float per_voxel;       ///< 1 / voxel_mm
   float feed_mm[3];      ///< motion since the stamp before
   float feed_length_mm;
@@ -47,13 +47,13 @@ struct StampPlace {
   float lateral_mm = 0;  ///< how much farther a deflected cutter's points may go into the material across the axis
   float tilt_mm = 0;     ///< how much more it may, since its envelope leans
   float slack_mm = 0;    ///< how far points may lie from where the block has them
-  float axial_mm = 0;    ///< of it along the axis; and how much farther they may go into the material along it
+  float axial_mm = 0;    ///< their part along the axis; and how much farther they may go into the material along it
 };
 
 /// Points whose chip the fields of the stamps around decide.
 struct ShallowPoints {
   int count;
-  std::int32_t* lane;  ///< of BlockPoints
+  std::int32_t* lane;  ///< index into BlockPoints
   std::int32_t* cell;  ///< lowest voxel of its cell in the arena
   float* cap;          ///< thickest chip that the motion allows, mm
   float* share[3];     ///< place in the cell
@@ -71,16 +71,16 @@ struct BlockHits {
 /// Tips of stamps in steps of `step_mm`.
 struct FixedTips {
   const std::int32_t *x, *y, *z;
-  std::int32_t own[3];  ///< of the stamp that reads
+  std::int32_t own[3];  ///< tip of the stamp that reads
   float step_mm;
-  std::int32_t first_id;  ///< of tip 0; smaller ids have none
+  std::int32_t first_id;  ///< id of tip 0; smaller ids have none
 };
 
 /// Points that the blank's surface may be near; the lists are read up to a multiple of 8.
 struct BlankPoints {
   int count;
   const float* blank;        ///< distances, from the first tile of the arena on
-  const std::int32_t* lane;  ///< of BlockPoints
+  const std::int32_t* lane;  ///< index into BlockPoints
   const std::int32_t* cell;  ///< lowest voxel of each point's cell
   const float* share[3];     ///< place in the cell
   float voxel_mm, min_slope;

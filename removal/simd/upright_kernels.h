@@ -10,7 +10,7 @@ namespace camber::removal::upright {
 /// Deflections of a stamp, mm, as a row of DeflectionTable.
 struct DeflectionRow {
   const float* now = nullptr;     ///< null: the undeflected cutter
-  const float* before = nullptr;  ///< of the stamp before
+  const float* before = nullptr;  ///< row of the stamp before
   int nodes = 0, steps = 0;
   float node_step_mm = 1;
   bool axial = false;  ///< the row has axial deflections
@@ -28,7 +28,7 @@ struct StampBend {
   DeflectionRow deflection;
   float lag_per_mm;
   float per_rad;      ///< rotation steps / (4 pi)
-  float max_tilt_mm;  ///< of the deflected envelope, along the motion
+  float max_tilt_mm;  ///< largest tilt of the deflected envelope along the motion
   float reach_mm;     ///< points whose motion allows more than -reach_mm times their normal's lateral part are read
   float axial_reach_mm = 0;  ///< the same of its axial part, added
 };
@@ -38,16 +38,16 @@ struct TiltedPlace {
   StampPlace tip;        ///< its motion in the tool's frame
   float turn_rad[3];     ///< how the tool turns meanwhile, in its frame
   float voxels[3][3];    ///< from the tip along each of the part's axes, by mm along the tool's x, y and z
-  float max_tilt;        ///< of the deflected envelope, for each mm of motion
+  float max_tilt;        ///< largest tilt of the deflected envelope for each mm of motion
   float min_cap_per_mm;  ///< a point whose motion allows no more than this times its square makes no chip
 };
 
-/// What is read at each point.
+/// Values read at each point.
 struct LaneReading {
   static constexpr int kMax = 64;
   alignas(64) float cap[kMax];          ///< thickest chip that the motion allows, mm
   alignas(64) float field[kMax];        ///< trilinear distance at the point, mm
-  alignas(64) float fraction[3][kMax];  ///< of the point in its cell
+  alignas(64) float fraction[3][kMax];  ///< place of the point in its cell
   alignas(64) std::int32_t cell[kMax];  ///< its cell's lowest voxel in the arena; -1: no chip
 };
 
@@ -57,7 +57,7 @@ struct PairLanes {
   int count;
   float *x, *y, *z;                          ///< from the stamp's tip, mm; out: less the stamp's deflection there
   const float *nx, *ny, *nz;                 ///< normal of the point
-  const float *guess_x, *guess_y, *guess_z;  ///< of the deflection, mm; 0 where it is not known
+  const float *guess_x, *guess_y, *guess_z;  ///< first guess of the deflection, mm; 0 where it is not known
   const float* known;                        ///< 1: the stamp's deflections are in `rows`, else 0
   const std::int32_t* row;                   ///< there: first pair
   const float* farther;                      ///< how much farther out than that cutter's the surface lies, mm
@@ -76,7 +76,7 @@ struct LineCut {
   int first = 0, end = kColumns;                   ///< columns
   std::int32_t id;
   int lowest;         ///< no voxel below is reached
-  float dx, dy, z;    ///< of voxel 0 of column 0, from the tip, mm
+  float dx, dy, z;    ///< place of voxel 0 of column 0 from the tip, mm
   float voxel, band;  ///< mm
   float flat, corner, shrink;
 };
@@ -101,10 +101,10 @@ struct LineSearch {
   std::int32_t* winner;          ///< [LineCut::kLine], out: index of a tip
 };
 
-/// What a deflected cutter adds to it.
+/// The addition for a deflected cutter.
 struct LineDeflection {
   DeflectionRow deflection;
-  float largest_mm;         ///< of the row
+  float largest_mm;         ///< largest deflection of the row
   float axial_mm;           ///< the largest along the axis
   const float* outward_mm;  ///< by sector, StampDeflection::kSectors of them
   int sectors;

@@ -71,7 +71,7 @@ struct Vectors {
     return F(s.max_tilt) * xsimd::sqrt(m.x * m.x + m.y * m.y + m.z * m.z);
   }
 
-  /// What the motion must allow at least, beside what deflections do.
+  /// The least motion bound of a point that is read, deflections apart.
   static F raised(const StampPlace&, const F& least, const Motion&) { return least; }
   static F raised(const TiltedPlace& s, const F& least, const Motion& m) {
     return least + F(s.min_cap_per_mm) * (m.x * m.x + m.y * m.y + m.z * m.z);

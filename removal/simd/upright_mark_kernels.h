@@ -12,11 +12,11 @@ namespace camber::removal::upright {
 struct MarkLanes {
   static constexpr int kLanes = 8;
   int count;               ///< a multiple of kLanes
-  const float *x, *y, *z;  ///< of the point, from the stamp's tip, mm
+  const float *x, *y, *z;  ///< place of the point from the stamp's tip, mm
   const float *nx, *ny, *nz;
   const float* highest;            ///< mm
-  const float* largest;            ///< of the stamp's deflections, mm
-  const std::int32_t* deflection;  ///< of the stamp's row, deflections (pairs of values) from the first
+  const float* largest;            ///< largest of the stamp's deflections, mm
+  const std::int32_t* deflection;  ///< first of the stamp's row, counted in deflections (pairs of values)
   float* height;                   ///< out, mm
 };
 
@@ -30,7 +30,7 @@ struct MarkTool {
 /// Undeflected cutters side by side: whole vectors of MarkLanes::kLanes, the last filled up with reach_mm < 0.
 struct CutterLanes {
   int count;
-  const float *x, *y, *z;  ///< of the tips, from some origin, mm
+  const float *x, *y, *z;  ///< places of the tips from a common origin, mm
   const float* reach;      ///< how near a place must be to count, mm
   float flat, corner;
   bool lateral;  ///< reach is due to deflections across the axis, and to rounding

@@ -22,6 +22,8 @@
 #include "calib/trace.h"
 #include "compensate/measured.h"
 #include "compensate/uncertainty.h"
+#include "compensate/verify.h"
+#include "distribute/section_parts.h"
 #include "dynamics/frequency_response.h"
 #include "machine/copy_operations.h"
 #include "machine/cycle_cases.h"
@@ -30,7 +32,9 @@
 #include "machine/measured_table.h"
 #include "machine/study_file.h"
 #include "machine/tool_proposal.h"
+#include "plan/plan_input.h"
 #include "simulate/force_regions.h"
+#include "ui/job_form.h"
 
 namespace {
 
@@ -265,6 +269,61 @@ void read_tables(std::string_view bytes) {
     simulate::read_force_regions(path);
 }
 
+void read_plan_file(std::string_view bytes) {
+  Diagnostics diagnostics;
+  const plan::PlanInput input = plan::read_plan_input(file_of(bytes, "plan.toml"), diagnostics);
+  if (diagnostics.has_errors()) return;
+  hold_finite(input.allowance_mm, "allowance_mm");
+  hold_finite(input.scallop_mm, "scallop_mm");
+  if (input.setups.empty()) fail("a plan without a set-up was read");
+}
+
+/// The record beside a compensated program.
+void read_record_file(std::string_view bytes) {
+  const compensate::Record record = compensate::read_record(file_of(bytes, "out.nc.record.json"));
+  const std::string text = compensate::record_json(record);
+  if (compensate::record_json(compensate::read_record(file_of(text, "again.nc.record.json"))) != text)
+    fail("a record that was written reads as another one", text);
+}
+
+template <class Part>
+void hold_part(std::string_view bytes) {
+  try {
+    const std::string once = distribute::bytes_of_part(distribute::part_from<Part>(bytes));
+    if (distribute::bytes_of_part(distribute::part_from<Part>(once)) != once) fail("a part reads as another one");
+  } catch (const BytesMissing&) {
+  }
+}
+
+/// The content of a part of a run in sections, behind its checksum; the first letter chooses the kind.
+void read_part_file(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view content = bytes.substr(1);
+  if (bytes[0] % 3 == 0) hold_part<distribute::SweptSection>(content);
+  if (bytes[0] % 3 == 1) hold_part<distribute::SolvedSection>(content);
+  if (bytes[0] % 3 == 2) hold_part<distribute::OwnSolution>(content);
+}
+
+/// An edit of camber ui ("tool.1", tab, "diameter_mm", tab, "8"), a line of "%", and the job's text.
+void edit_job_form(std::string_view bytes) {
+  const std::size_t cut = bytes.find("\n%\n");
+  if (cut == std::string_view::npos) return;
+  const std::string_view asked = bytes.substr(0, cut);
+  const std::size_t first = asked.find('\t'), second = first == asked.npos ? first : asked.find('\t', first + 1);
+  if (second == asked.npos || asked.find_first_of("\r\n") != asked.npos) return;
+  ui::JobEdit edit{.kind = ui::JobEdit::Kind::set,
+                   .table = std::string(asked.substr(0, first)),
+                   .key = std::string(asked.substr(first + 1, second - first - 1)),
+                   .value = std::string(asked.substr(second + 1))};
+  const std::string text(bytes.substr(cut + 3));
+  ui::job_fields(ui::with_edits(text, {&edit, 1}));
+  edit.kind = ui::JobEdit::Kind::confirm;
+  ui::with_edits(text, {&edit, 1});
+  edit.kind = ui::JobEdit::Kind::remove;
+  const std::string less = ui::with_edits(text, {&edit, 1});
+  if (std::ranges::count(less, '\n') > std::ranges::count(text, '\n')) fail("a removed key adds lines", less);
+}
+
 struct Door {
   std::string_view name;
   void (*read)(std::string_view bytes);
@@ -289,6 +348,10 @@ constexpr Door kDoors[] = {
     {"response", read_response_file},
     {"stl", read_stl_file},
     {"tables", read_tables},
+    {"plan", read_plan_file},
+    {"record", read_record_file},
+    {"part", read_part_file},
+    {"form", edit_job_form},
 };
 
 const Door& door() {

@@ -13,9 +13,9 @@ namespace camber::removal::tilted {
 namespace {
 
 constexpr int kPadded = 24;            ///< voxels of a row, filled up to whole vectors
-constexpr double kRounding_mm = 1e-4;  ///< of distances in single precision
+constexpr double kRounding_mm = 1e-4;  ///< rounding of distances in single precision
 
-/// What the plane under a cutter leaves may be lower by this without a change: of heights in single precision.
+/// The plane under a cutter may lie lower by this without a change: rounding of heights in single precision.
 constexpr double kPlaneRounding_mm = 1e-5;
 
 /// The voxels of a row in the tool's frame: the first, and from each to the next.

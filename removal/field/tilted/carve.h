@@ -34,10 +34,10 @@ struct Way {
   /// Less than before where the cutter draws back.
   double up_mm = 0;
 };
-/// Of every stamp, for places within the stock.
+/// The way of every stamp, for places within the stock.
 std::vector<Way> ways(std::span<const Stamp> stamps, const Vec3& stock_min_mm, const Vec3& stock_max_mm);
 
-/// What is known of the rows (along z) of a tile's voxels.
+/// Facts about the rows (along z) of a tile's voxels.
 ///
 /// The distance to a cutter is 1-Lipschitz, and material is only removed: a row whose voxels all lie by `d` above what
 /// the cutter at one stamp would leave is not changed before the cutter has moved, or bends, by d. So each row keeps
@@ -77,7 +77,7 @@ class RowsDue {
  private:
   static constexpr std::size_t kSide = Tile::kSide;
   static constexpr double kNever = -1e300;
-  /// Of several rows: those that the plane has passed are not due before `up`, the others not before `any`.
+  /// When several rows are due: those that the plane has passed are not due before `up`, the others not before `any`.
   struct First {
     float any = -1;
     double up = kNever;
@@ -94,11 +94,11 @@ class RowsDue {
 /// One stamp in a tile.
 struct Carving {
   const CutterShape& shape;
-  const ProfileRows& profile;  ///< of the shape
+  const ProfileRows& profile;  ///< rows of `shape`
   const StampFrame& frame;
   double voxel_mm, band_mm;
   std::int32_t id;
-  Way way;               ///< of the stamp
+  Way way;               ///< way of the stamp
   double shrink_mm = 0;  ///< the cutter is smaller by this
 };
 

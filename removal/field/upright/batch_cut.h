@@ -44,7 +44,7 @@ class BatchCut {
   std::vector<float> x_, y_, z_;  ///< tips from the tile's voxel (0, 0, 0)
   std::vector<std::int32_t> id_;  ///< index of each
   std::vector<std::int32_t> candidates_;
-  std::vector<float> cx_, cy_, cz_, low_, margin_;  ///< of the candidates
+  std::vector<float> cx_, cy_, cz_, low_, margin_;  ///< values of the candidates
 };
 
 }  // namespace camber::removal::upright

@@ -37,11 +37,11 @@ double material_voxels(const Tile& tile, double voxel_mm);
 /// Lower bound of the distance between the cutter's envelope and any voxel of a tile.
 double tile_distance_mm(const Index3& tile_index, double voxel_mm, const CutterShape& shape, const Vec3& tip_mm);
 
-/// As carve(), for any convex profile.
+/// carve() for any convex profile.
 bool carve_general(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
                    const CutterShape& shape, const CarveStamp& stamp);
 
-/// As carve_deflected(), for any convex profile.
+/// carve_deflected() for any convex profile.
 bool carve_deflected_general(Tile& tile, ColumnCover& cover, const Index3& tile_index, double voxel_mm, double band_mm,
                              const EnvelopeGrid& envelope, const CarveStamp& stamp, const DeflectionTable& deflections,
                              const StampDeflection& deflection);

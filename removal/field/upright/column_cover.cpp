@@ -62,7 +62,7 @@ bool test_columns(const float* cx, const float* cy, const float* cz, const float
               : test_line<false, false>(cx, cy, cz, cdeflection, top_mm, first, end, px, voxel, tips, radius, out);
 }
 
-/// As test_columns for lines one after the other, kLine values apart; a bit for each.
+/// test_columns for lines one after the other, kLine values apart; a bit for each.
 CAMBER_VECTOR_CLONES
 std::uint32_t test_lines(const float* cx, const float* cy, const float* cz, const float* cdeflection,
                          const float* top_mm, int i_from, int i_to, int first, int end, float voxel, NewTips tips,

@@ -38,7 +38,7 @@ class ColumnCover {
 
   /// First voxel of the column from which on all are air.
   int top(int column) const { return top_[static_cast<std::size_t>(column)]; }
-  const std::int16_t* tops(int i) const { return top_.data() + i * Tile::kSide; }  ///< of column (i, 0) and on
+  const std::int16_t* tops(int i) const { return top_.data() + i * Tile::kSide; }  ///< from column (i, 0) on
   const float* tops_mm(int i) const {
     return top_mm_.data() + i * kLine;
   }  ///< the same, from voxel 0, mm; far below past the last
@@ -51,7 +51,7 @@ class ColumnCover {
     constexpr double kPassed_mm = 5e-4;
     axial_slack_ = std::max(axial_slack_, static_cast<float>(2 * largest_mm - kPassed_mm));
   }
-  /// What a column remembers.
+  /// The stamp that a column remembers.
   struct Remembered {
     bool known;
     Eigen::Vector3f tip;

@@ -57,7 +57,7 @@ class StepArena : public TileArena {
   std::deque<std::size_t> lowered_;       ///< columns of places, to be read
   std::vector<char> is_lowered_;          ///< by column
   std::vector<const ColumnCover*> covers_;
-  std::vector<int> layers_found_;       ///< of the blank's edges, by tile
+  std::vector<int> layers_found_;       ///< layers of the blank's edges, by tile
   std::deque<std::size_t> unfinished_;  ///< tiles, in the order in which they came
   std::uint64_t stamps_ = 0;
   std::size_t there_ = 0, most_near_ = 0, near_bound_ = 0;  ///< tiles; near one stamp, until now and at most

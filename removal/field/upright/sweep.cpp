@@ -54,7 +54,7 @@ class Sweep {
   Stock& stock_;
   const CutterShape& shape_;
   std::span<const Stamp> all_, stamps_;
-  std::int32_t first_id_;  ///< of stamps_[0]
+  std::int32_t first_id_;  ///< id of stamps_[0]
   const SweepOptions& options_;
   std::vector<WorkTile> tiles_;
   SlotMap slots_;

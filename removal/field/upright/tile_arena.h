@@ -26,7 +26,7 @@ class TopMap {
   static constexpr int kCellBits = 2, kCell = 1 << kCellBits;  ///< voxels a side of a square
   static constexpr int kOfTile = Tile::kCore / kCell;          ///< squares a side of a tile
 
-  /// As if everything were material.
+  /// Starts anew, as if everything were material.
   void reset(const SlotMap& slots);
   /// `cover_of`: of a tile by its place in the map, null where there is none. A square knows the heights `reach_voxels`
   /// around it as well.
@@ -75,7 +75,7 @@ class TileArena {
     const int in_tile = cell % (2 * Tile::kVolume);
     return {blanks_.get() + tile * Tile::kVolume + in_tile, edges_[tile].faces(in_tile), share, voxel_};
   }
-  /// Of all tiles, Tile::kVolume each; only what blank() points to counts.
+  /// Blanks of all tiles, Tile::kVolume each; only what blank() points to counts.
   const float* blanks() const { return blanks_.get(); }
   /// The number of the tile at an index, 0 (or less) where it is air or out of reach.
   std::int32_t find(int i, int j, int k) const { return slots_.find(i, j, k); }
@@ -86,7 +86,7 @@ class TileArena {
   void read_tops(int reach_voxels, const std::function<const ColumnCover&(std::size_t tile)>& cover_of);
 
   ArenaView view() const;
-  /// Of a stamp that moves at most by its feed; see StampPlace::min_forward_mm.
+  /// Place of a stamp that moves at most by its feed; see StampPlace::min_forward_mm.
   StampPlace place_of(const Stamp& stamp, double min_forward_mm) const;
 
  protected:
@@ -103,7 +103,7 @@ class TileArena {
   void share_upper_layer(std::size_t tile, IsRead is_read);
 
   double voxel_ = 0;
-  SlotMap slots_, before_;  ///< of this stretch and of the last one
+  SlotMap slots_, before_;  ///< maps of this stretch and of the last one
   TopMap tops_;
   std::vector<std::vector<std::int32_t>> reached_;
   std::size_t room_ = 0;
@@ -112,7 +112,7 @@ class TileArena {
   std::vector<Index3> index_;
   std::unique_ptr<Tile[]> tiles_;    ///< not cleared
   std::unique_ptr<float[]> blanks_;  ///< not cleared
-  std::vector<BlankEdges> edges_;    ///< of the blanks
+  std::vector<BlankEdges> edges_;    ///< edges of the blanks
   std::vector<std::size_t> fresh_, free_;
 
  private:
