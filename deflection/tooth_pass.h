@@ -32,9 +32,7 @@ struct ToothPass {
 /// One revolution of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip
 /// points along +X, the edge of tooth t stands at t pitches minus a, counter-clockwise from +X.
 struct TurnForces {
-  struct Tooth {
-    Vec3 force_N = Vec3::Zero();  ///< on the tool, tool's frame
-    double torque_Nmm = 0;
+  struct Tooth : ToolLoad {
     double chip_max_mm = 0;  ///< maximum along the edge at this instant
   };
   std::vector<std::vector<Tooth>> teeth;  ///< [flutes][rotation steps of a turn]
