@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "kinematics/control_options.h"
-#include "simulate/operations.h"
+#include "motion/operations.h"
 
 namespace camber::adapt {
 namespace {
@@ -60,10 +60,10 @@ std::shared_ptr<Candidate> FeedChooser::with(std::vector<double> feed) const {
                      kinematics::decimals_for(job_.machine.control, given_.text()));
   Diagnostics repeated;  // those of the given program
   machine::Job job = job_;
-  out->operations = simulate::moved_ranges(simulate::as_lines(job_.operations, given_.text(), given_.moves_in_part()),
-                                           out->emission.block_of_line);
+  out->operations = motion::moved_ranges(motion::as_lines(job_.operations, given_.text(), given_.moves_in_part()),
+                                         out->emission.block_of_line);
   job.operations = out->operations;
-  out->program = simulate::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
+  out->program = motion::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
   out->map = nc::MoveMap(given_.moves_in_part(), out->program.moves_in_part(), out->emission.block_of_line);
   out->speed_mm_per_s = greatest_speeds(*out);
   return out;

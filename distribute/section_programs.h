@@ -10,7 +10,7 @@
 #include "base/sparse_list.h"
 #include "distribute/section_pieces.h"
 #include "distribute/section_stock.h"
-#include "simulate/path_outline.h"
+#include "motion/path_stretch.h"
 #include "simulate/pieces.h"
 
 namespace camber::distribute {
@@ -27,10 +27,10 @@ struct SectionProgramsOptions {
 struct NominalSection {
   removal::StampPath path{};  ///< all runs; stamps from `first` on; empty where `thin` has them
   std::size_t first = 0;
-  const simulate::ThinPath* thin = nullptr;
+  const motion::SparsePath* thin = nullptr;
   SectionPlace place;
 
-  simulate::PathStretch stretch() const { return thin ? thin->stretch() : simulate::PathStretch(path, first); }
+  motion::PathStretch stretch() const { return thin ? thin->stretch() : motion::PathStretch(path, first); }
 };
 
 class SectionPrograms {
@@ -49,10 +49,10 @@ class SectionPrograms {
   void go_to(std::size_t section, std::size_t sections);
 
   /// As the machine runs them.
-  simulate::PathStretch path() const;
-  simulate::PathStretch target_path() const;
+  motion::PathStretch path() const;
+  motion::PathStretch target_path() const;
   /// Of path(), where it is thin; else null.
-  const simulate::PathOutline* outline() const { return thin_ ? &thin_->path.outline : nullptr; }
+  const motion::PathOutline* outline() const { return thin_ ? &thin_->path.outline : nullptr; }
   /// Where the pieces of any section lie on these two, or a little more.
   removal::Region reach(std::size_t section, std::size_t sections) const;
   NominalSection nominal(std::size_t section, std::size_t sections) const;
@@ -65,12 +65,12 @@ class SectionPrograms {
  private:
   /// Of thin programs.
   struct Thin {
-    simulate::ThinPath path;
-    std::optional<simulate::ThinPath> original;  ///< of a target that is another program
-    simulate::ThinPath nominal;                  ///< of the target
+    motion::SparsePath path;
+    std::optional<motion::SparsePath> original;  ///< of a target that is another program
+    motion::SparsePath nominal;                  ///< of the target
     std::optional<std::size_t> section{};
     std::size_t sections = 0;
-    const simulate::ThinPath& target() const { return original ? *original : path; }
+    const motion::SparsePath& target() const { return original ? *original : path; }
   };
   void time_all(std::size_t longest_path);
 

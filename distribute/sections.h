@@ -35,7 +35,7 @@ SweptSection sweep_section(const machine::Job& job, const SectionPrograms& progr
                            std::size_t sections, const std::function<void(const removal::StockPart&)>& own,
                            Diagnostics& diagnostics);
 /// The program's path alone, out of a stock.
-Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const simulate::PathStretch& path,
+Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const motion::PathStretch& path,
                          const SectionPlace& place);
 
 /// Change of the stock that a piece must feel, or of the deflection with which the tool enters it, before it is solved
@@ -60,7 +60,7 @@ struct SolveOptions {
   std::size_t section = 0, sections = 1;
   std::optional<std::size_t> turn_from{};  ///< see PredictOptions
   std::function<void(double)> progress{};
-  const simulate::PathOutline* outline = nullptr;  ///< of a path that is not in memory as a whole
+  const motion::PathOutline* outline = nullptr;  ///< of a path that is not in memory as a whole
 };
 struct Solved {
   SolvedSection section;
@@ -72,7 +72,7 @@ Solved solve_section(const machine::Job& job, const SectionPrograms& programs, c
                      const SolveOptions& options, Diagnostics& diagnostics,
                      std::optional<simulate::Target>* kept = nullptr);
 /// The same against a whole target; no contour.
-Solved solve_path_section(const machine::Job& job, const simulate::Target& target, const simulate::PathStretch& path,
+Solved solve_path_section(const machine::Job& job, const simulate::Target& target, const motion::PathStretch& path,
                           const SectionPlace& place, const SectionParts& parts,
                           const std::function<void(double)>& progress);
 
@@ -80,7 +80,7 @@ Solved solve_path_section(const machine::Job& job, const simulate::Target& targe
 /// `programs` may be at another section.
 removal::Region section_region(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
                                std::size_t sections);
-removal::Region section_region(const machine::Job& job, const simulate::PathStretch& path, const SectionPlace& place,
+removal::Region section_region(const machine::Job& job, const motion::PathStretch& path, const SectionPlace& place,
                                std::size_t section);
 
 /// Gives the parts of all sections one after the other, in order; each may be used up. Several times the same.

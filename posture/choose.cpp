@@ -372,7 +372,7 @@ class BySurface {
     constexpr int kTurns = 40;
     double radius = 0, from = std::numeric_limits<double>::infinity();
     for (const ToolShape::Piece& piece : tool_.pieces)
-      if (piece.solid.part() != simulate::OutlineRing::Part::cutter) {
+      if (piece.solid.part() != checks::OutlineRing::Part::cutter) {
         radius = std::max(radius, piece.radius_mm + piece.need_mm);
         from = std::min(from, piece.bottom_mm);
       }

@@ -6,10 +6,10 @@
 
 #include "base/cancel.h"
 #include "deflection/beam.h"
+#include "motion/path_stretch.h"
 #include "removal/engagement.h"
 #include "removal/known_run.h"
 #include "simulate/cut_parts.h"
-#include "simulate/path_stretch.h"
 #include "simulate/pieces.h"
 #include "simulate/tooth_loads.h"
 
@@ -185,7 +185,8 @@ CutResult cut_range(Stock& stock, const machine::Tool& tool, const machine::Mate
   if (before) cutter.begin_after(*before);
   // Which stamps are read depends on where stretches begin: in rigid coupling they are the pieces of sections.
   const bool rigid = options.coupling == machine::Coupling::rigid;
-  const std::size_t most = rigid ? std::min(options.rigid_stretch_stamps, kPieceStamps) : options.stretch_stamps,
+  const std::size_t most =
+                        rigid ? std::min(options.rigid_stretch_stamps, motion::kPieceStamps) : options.stretch_stamps,
                     stretches = (count + most - 1) / most;
   for (std::size_t i = 0; i < stretches; ++i) {
     cancellation_point();
