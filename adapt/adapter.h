@@ -43,12 +43,12 @@ class Adapter {
   // adapt.cpp
   void observe_given();
   std::vector<double> allowed(double factor) const;
-  std::shared_ptr<Candidate> choose(double factor, int rounds) const;
+  std::shared_ptr<FeedCandidate> choose(double factor, int rounds) const;
   void find_time_limit(AdaptResult& out);
-  ObservedLoads predict(const Candidate& candidate, std::vector<std::string>& doubts);
+  ObservedLoads predict(const FeedCandidate& candidate, std::vector<std::string>& doubts);
   void correct(AdaptResult& out);
   void keep_feeds(AdaptResult& out);
-  bool can_be_raised(const Candidate& candidate, std::span<const double> now) const;
+  bool can_be_raised(const FeedCandidate& candidate, std::span<const double> now) const;
   void lower_feeds(const Verdict& verdict, std::span<const double> now, std::vector<double>& feeds) const;
 
   // adapter_result.cpp
@@ -79,7 +79,7 @@ class Adapter {
   std::vector<Contact> contacts_;
   ObservedLoads before_, loads_, best_loads_;
   std::vector<double> peaks_before_;  ///< by limit
-  std::shared_ptr<Candidate> best_;
+  std::shared_ptr<FeedCandidate> best_;
   Verdict verdict_;
   simulate::ChatterMargins chatter_, best_chatter_;
   int predictions_ = 0;

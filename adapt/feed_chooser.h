@@ -14,7 +14,7 @@
 namespace camber::adapt {
 
 /// A program with other feeds, as the machine runs it.
-struct Candidate {
+struct FeedCandidate {
   std::vector<double> feed_mm_per_s;   ///< commanded, one per cell
   std::vector<double> speed_mm_per_s;  ///< greatest actual speed, one per cell
   nc::Emission emission;
@@ -38,12 +38,12 @@ class FeedChooser {
   FeedChooser(const machine::Job& job, const simulate::SimulatedProgram& given, const FeedCells& cells);
 
   /// allowed_mm_per_s: see allowed_feeds(). rounds: of emitting and timing, at most.
-  std::shared_ptr<Candidate> choose(std::span<const double> allowed_mm_per_s, std::span<const Contact> contacts,
-                                    int rounds = kRounds) const;
+  std::shared_ptr<FeedCandidate> choose(std::span<const double> allowed_mm_per_s, std::span<const Contact> contacts,
+                                        int rounds = kRounds) const;
   /// The program with these feeds.
-  std::shared_ptr<Candidate> with(std::vector<double> feed_mm_per_s) const;
+  std::shared_ptr<FeedCandidate> with(std::vector<double> feed_mm_per_s) const;
   /// Every feed that may be changed is the given one.
-  std::shared_ptr<Candidate> with_constant(double feed_mm_per_s) const;
+  std::shared_ptr<FeedCandidate> with_constant(double feed_mm_per_s) const;
 
   const FeedBounds& bounds() const { return bounds_; }
   /// By cell: greatest actual speed with the highest feed everywhere.
@@ -54,10 +54,10 @@ class FeedChooser {
   struct Ceiling;
   std::vector<double> ceiling_of(std::span<const double> allowed, std::span<const Contact> contacts) const;
   void slow_entries(std::span<const Contact> contacts, std::vector<double>& ceiling) const;
-  bool lower_excesses(const Candidate& candidate, std::span<const double> allowed, int round,
+  bool lower_excesses(const FeedCandidate& candidate, std::span<const double> allowed, int round,
                       std::vector<double>& reach_mm, std::vector<double>& ceiling) const;
-  bool lower_unreached(const Candidate& candidate, std::vector<double>& reachable) const;
-  std::vector<double> greatest_speeds(const Candidate& candidate) const;
+  bool lower_unreached(const FeedCandidate& candidate, std::vector<double>& reachable) const;
+  std::vector<double> greatest_speeds(const FeedCandidate& candidate) const;
 
   const machine::Job& job_;
   const simulate::SimulatedProgram& given_;

@@ -17,7 +17,7 @@ struct Verdict {
 };
 
 /// Judges the observed loads of a candidate.
-Verdict judge(const Candidate& candidate, const ObservedLoads& loads, const FeedCells& cells,
+Verdict judge(const FeedCandidate& candidate, const ObservedLoads& loads, const FeedCells& cells,
               const simulate::SimulatedProgram& given, std::span<const LoadLimit> limits, const FeedBounds& bounds);
 
 /// The greatest of each load at the observed feeds, by limit; of chip_min the greatest chip.

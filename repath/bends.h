@@ -20,7 +20,7 @@ inline Bent fixed(const Primitive& p) { return {p, {p.sweep_rad, p.sweep_rad}}; 
 /// Lines and arcs that may follow a bent primitive. Where nothing is bounded they are those of the fitter.
 class Bends {
  public:
-  Bends(const Polyline& path, const FitOptions& options, const Fitter& fitter, const Joints& joints)
+  Bends(const Polyline& path, const FitOptions& options, const Fitter& fitter, const PieceJoints& joints)
       : path_(path), options_(options), fitter_(fitter), joints_(joints) {}
 
   /// What lies between two points, whatever comes before it: no arc where the line is straight to an increment.
@@ -48,7 +48,7 @@ class Bends {
   const Polyline path_;
   const FitOptions& options_;
   const Fitter& fitter_;
-  const Joints& joints_;
+  const PieceJoints& joints_;
 };
 
 }  // namespace camber::repath

@@ -27,7 +27,7 @@ std::array<std::optional<Bent>, 2> line_or_arc(const Bends& bends, const Bent& b
 /// Chains without a corner inside.
 class ChainWindow {
  public:
-  ChainWindow(const Polyline& path, const FitOptions& options, const Fitter& fitter, const Joints& joints)
+  ChainWindow(const Polyline& path, const FitOptions& options, const Fitter& fitter, const PieceJoints& joints)
       : path_(path), options_(options), joints_(joints), bends_(path, options, fitter, joints) {}
 
   struct Limits {
@@ -55,7 +55,7 @@ class ChainWindow {
 
   const Polyline path_;
   const FitOptions& options_;
-  const Joints& joints_;
+  const PieceJoints& joints_;
   Bends bends_;
   std::vector<State> states_;
   std::vector<std::vector<std::size_t>> at_;  ///< states that end at the begin, and at each of the ends

@@ -77,7 +77,7 @@ struct ArcRoom {
 };
 
 /// What fits between two points, whatever lies beside it: no arc where the line is straight to an increment.
-struct Tried {
+struct TriedPrimitives {
   std::optional<Primitive> line, arc;
   std::optional<ArcRoom> room;  ///< as Fitter::arc_room(): not where the two points are one
   bool best_sweep = false;      ///< the arc has the room's best sweep
@@ -89,7 +89,7 @@ class FitMemory {
   void forget();
   /// What is kept of a pair; else makes it.
   template <class Make>
-  const Tried& at(std::uint32_t first, std::uint32_t last, Make make) {
+  const TriedPrimitives& at(std::uint32_t first, std::uint32_t last, Make make) {
     std::uint32_t& slot = slots_[(first * 67u + last) % kSlots];
     if (slot == 0) {
       kept_.push_back({first, last, make()});
@@ -104,7 +104,7 @@ class FitMemory {
   static constexpr std::uint32_t kSlots = 4096;  ///< a power of two, more than one window of a search asks for
   struct Kept {
     std::uint32_t first = 0, last = 0;
-    Tried tried;
+    TriedPrimitives tried;
   };
   std::vector<std::uint32_t> slots_;  ///< by a hash of the two points: 1 + index into kept_; 0 none
   std::vector<Kept> kept_;
@@ -114,7 +114,7 @@ class FitMemory {
 class Fitter {
  public:
   /// As line(), arc_room(), arc(). Kept for a while: asked again it costs nothing. Valid until the next call.
-  const Tried& tried(std::uint32_t first, std::uint32_t last) const;
+  const TriedPrimitives& tried(std::uint32_t first, std::uint32_t last) const;
 
   Fitter(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);
   std::optional<Primitive> line(std::uint32_t first, std::uint32_t last) const;
@@ -133,7 +133,7 @@ class Fitter {
                                           double sweep_rad) const;
 
  private:
-  Tried try_out(std::uint32_t first, std::uint32_t last) const;
+  TriedPrimitives try_out(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> full_turn(std::uint32_t first, std::uint32_t last) const;
   std::optional<Primitive> rounded_arc(std::uint32_t first, std::uint32_t last, int direction,
                                        const Vec2& center_mm) const;

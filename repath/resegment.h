@@ -43,7 +43,7 @@ struct SpacePath {
   double sagitta_mm = 0;  ///< maximum deviation of the lines between the points from arcs; 0: no arcs
 };
 /// `sagitta_mm`: of the lines that stand for arcs, greater than zero.
-SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double sagitta_mm);
+SpacePath space_path_of(const nc::Interpretation& moves, const BlockRun& run, double sagitta_mm);
 
 /// Where a segment lies.
 struct SegmentPlace {
@@ -62,7 +62,7 @@ struct Layout {
 
 /// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed, or where the control has no
 /// block time times the mean length of its blocks.
-double length_for(const nc::Interpretation& moves, const Run& run, const ResegmentOptions& options);
+double length_for(const nc::Interpretation& moves, const BlockRun& run, const ResegmentOptions& options);
 
 /// Between corners a smooth curve takes the place of the points (half of the tolerance), and segments of `length_mm`
 /// are laid on it, shorter ones where the whole tolerance asks for it. Where a curve leaves the old path by more, as

@@ -16,7 +16,7 @@ struct ShortArcRule {
 /// would be laid on it, the length or the chord within the tolerance, and goes on smoothly (20 degrees) into a block of
 /// the run that is short too. Otherwise one block is best, and the arc stays. A stretch does not end on an arc whose
 /// mode (G2, G3) the text behind relies on. Stretches of one block are left out.
-std::vector<Run> between_arcs(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
-                              const ShortArcRule& rule);
+std::vector<BlockRun> between_arcs(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
+                                   const ShortArcRule& rule);
 
 }  // namespace camber::repath

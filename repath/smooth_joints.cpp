@@ -106,7 +106,7 @@ class Smoother {
 
   const FitOptions& options_;
   const std::vector<bool>& corners_;
-  Joints joints_;
+  PieceJoints joints_;
   ChainWindow window_;
   std::vector<std::uint32_t> ends_;
 };

@@ -101,7 +101,7 @@ class LineSparer {
   const Polyline path_;
   const FitOptions& options_;
   const std::vector<bool> ends_at_;
-  Joints joints_;
+  PieceJoints joints_;
   ChainWindow window_;
   std::vector<std::uint32_t> ends_;
 };

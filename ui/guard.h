@@ -8,7 +8,7 @@
 
 namespace camber::ui {
 
-struct Guard {
+struct RequestGuard {
   std::string token;        ///< hexadecimal; whoever has it is the user
   std::string cookie_name;  ///< name of the cookie that carries it; with the port, for cookies do not tell ports apart
   std::string address;      ///< that the server listens on
@@ -25,7 +25,7 @@ struct Asked {
   std::vector<std::string> lengths;  ///< every Content-Length header
 };
 
-struct Refusal {
+struct RequestRefusal {
   int status = 403;
   std::string why;
 };
@@ -36,7 +36,7 @@ struct Refusal {
 /// - Origin, where it is sent, is http:// and such a host. Posts of other sites are refused.
 /// - The token is in the address or in the cookie.
 /// - A body says its length, which is at most max_upload_bytes: 413.
-std::optional<Refusal> refusal(const Guard& guard, const Asked& asked);
+std::optional<RequestRefusal> refusal(const RequestGuard& guard, const Asked& asked);
 
 /// "localhost:8080", "[::1]:80", "127.0.0.1", or `address`.
 bool is_own_host(std::string_view host, std::string_view address);

@@ -23,7 +23,7 @@ namespace camber::ui {
 enum class RunState { queued, running, done, doubtful, failed, cancelled, crashed };
 std::string_view name_of(RunState state);
 
-struct Run {
+struct CommandRun {
   int id = 0;
   std::string job, name;  ///< names of the job's file and of the command
   Command command{};
@@ -37,10 +37,10 @@ struct Run {
 };
 
 /// With all messages, or only their number.
-nlohmann::json json_of(const Run& run, bool with_messages);
+nlohmann::json json_of(const CommandRun& run, bool with_messages);
 
 /// Takes a line of a process's standard error: progress, or a message that is added to `messages`.
-void take_event(std::string_view line, nlohmann::json& messages, Run* progress = nullptr);
+void take_event(std::string_view line, nlohmann::json& messages, CommandRun* progress = nullptr);
 
 /// How a command runs that is over in seconds: `camber ARGUMENTS --events --only-in .` in the folder.
 std::vector<std::string> command_line(const std::string& executable, const Command& command);
@@ -55,8 +55,8 @@ class Runs {
   int add(std::string job, std::string name, Command command);
   /// false: there is no such run, or it has ended.
   bool cancel(int id);
-  std::vector<Run> all() const;
-  std::optional<Run> find(int id) const;
+  std::vector<CommandRun> all() const;
+  std::optional<CommandRun> find(int id) const;
 
   static constexpr std::size_t kMaxRuns = 500;      ///< the oldest that have ended are forgotten
   static constexpr std::size_t kMaxMessages = 500;  ///< most messages that are kept of a run
@@ -64,7 +64,7 @@ class Runs {
  private:
   void work();
   void execute(int id);
-  void update(int id, const std::function<void(Run&)>& change);
+  void update(int id, const std::function<void(CommandRun&)>& change);
   void finish(int id, const Ended& ended);
   void fail(int id, const std::string& why);
 
@@ -73,7 +73,7 @@ class Runs {
   const std::function<void()> changed_;
   mutable std::mutex mutex_;  ///< guards all below
   std::condition_variable wake_;
-  std::vector<Run> runs_;
+  std::vector<CommandRun> runs_;
   std::unique_ptr<Process> process_;  ///< process of the run that goes on
   int running_ = 0, last_id_ = 0;
   bool stop_ = false;

@@ -348,7 +348,7 @@ class Server {
 
   const Folder folder_;
   const std::string executable_;
-  Guard guard_;
+  RequestGuard guard_;
   std::mutex mutex_;  ///< of new folders
   Changes changes_;
   Bench bench_;

@@ -247,7 +247,7 @@ TEST(ThinWallSlow, StaticCouplingLeavesThePlatesEquilibrium) {
   }
 }
 
-TEST(checks::ThinWall, ThicknessIsFoundUnderTheSurface) {
+TEST(ThinWall, ThicknessIsFoundUnderTheSurface) {
   const Scene scene(24);
   removal::Stock stock = scene.blank();
   simulate::sweep(stock, scene.tool, scene.path.stamps, 0, 0);
@@ -257,7 +257,7 @@ TEST(checks::ThinWall, ThicknessIsFoundUnderTheSurface) {
   EXPECT_NEAR(simulate::reach_mm(stock, wall, 0, 100).value_or(0), 27, 1);
 }
 
-TEST(checks::ThinWall, NothingHeldIsAnError) {
+TEST(ThinWall, NothingHeldIsAnError) {
   Scene scene(24);
   scene.job.workpiece->fixed_bottom = false;
   scene.job.workpiece->fixed_boxes = {{{100, 0, 0}, {110, 2, 2}}};
@@ -273,7 +273,7 @@ TEST(checks::ThinWall, NothingHeldIsAnError) {
   }
 }
 
-TEST(checks::ThinWall, NothingUnderTheToolIsAnError) {
+TEST(ThinWall, NothingUnderTheToolIsAnError) {
   Scene scene(24);
   for (removal::Stamp& s : scene.path.stamps) s.pose.tip_mm.y() += 50;
   try {
