@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "base/stage.h"
-#include "checks/machine_places.h"
 #include "checks/machine_solids.h"
 #include "kinematics/joint_map.h"
 

@@ -1,4 +1,4 @@
-#include "checks/machine_places.h"
+#include "checks/machine_collisions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "checks/thin_walls.h"
+#include "checks/height_survey.h"
 
 #include <algorithm>
 #include <vector>

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "deflection/run_out_offsets.h"
-#include "deflection/tooth_marks.h"
 #include "deflection/tooth_pass.h"
 #include "removal/deflection_table.h"
 #include "simulate/cut.h"

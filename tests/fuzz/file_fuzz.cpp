@@ -22,7 +22,7 @@
 #include "calib/trace.h"
 #include "compensate/measured.h"
 #include "compensate/uncertainty.h"
-#include "dynamics/frequency_response.h"
+#include "dynamics/fit_modes.h"
 #include "machine/copy_operations.h"
 #include "machine/cycle_cases.h"
 #include "machine/force_log.h"
