@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "adapt/adapter.h"
-#include "adapt/feed_brackets.h"
+#include "adapt/feed_chooser.h"
 #include "simulate/chatter.h"
 #include "simulate/verdict.h"
 

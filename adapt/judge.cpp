@@ -1,4 +1,4 @@
-#include "adapt/judge.h"
+#include "adapt/adapter.h"
 
 #include <algorithm>
 #include <cmath>

@@ -29,9 +29,7 @@
 #include "plausibility/plausibility.h"
 #include "report/check_summary.h"
 #include "report/joined_json.h"
-#include "report/path_arrays.h"
 #include "report/planned_picture.h"
-#include "report/setup_sheet.h"
 
 namespace camber {
 namespace {

@@ -13,7 +13,6 @@
 #include "machine/copy_operations.h"
 #include "machine/job_file.h"
 #include "plausibility/plausibility.h"
-#include "report/copy_page.h"
 #include "report/copy_summary.h"
 #include "simulate/predict.h"
 

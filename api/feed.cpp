@@ -16,7 +16,7 @@
 #include "kinematics/machine_program.h"
 #include "machine/assumptions.h"
 #include "motion/machine_checks.h"
-#include "report/feed_summary.h"
+#include "report/time_summary.h"
 #include "report/timed_track.h"
 
 namespace camber {

@@ -12,7 +12,6 @@
 #include "plausibility/plausibility.h"
 #include "repath/fastest.h"
 #include "repath/raster.h"
-#include "repath/raster_text.h"
 #include "report/rewrite_summary.h"
 
 namespace camber {

@@ -1,4 +1,4 @@
-#include "distribute/section_programs.h"
+#include "distribute/sections.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "plausibility/part_fit.h"
+#include "plausibility/evidence.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 
 #include "base/triangle_mesh.h"
 #include "checks/setup_checks.h"
-#include "plausibility/part_fit.h"
+#include "plausibility/evidence.h"
 #include "plausibility/rules.h"
 
 namespace camber::plausibility {

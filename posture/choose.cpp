@@ -11,8 +11,6 @@
 
 #include "base/stage.h"
 #include "base/units.h"
-#include "posture/clear_directions.h"
-#include "posture/one_direction.h"
 #include "posture/path_cost.h"
 #include "posture/rotary_path.h"
 

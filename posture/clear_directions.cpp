@@ -1,4 +1,4 @@
-#include "posture/clear_directions.h"
+#include "posture/choose.h"
 
 #include <algorithm>
 #include <cassert>
@@ -8,7 +8,6 @@
 #include <tbb/parallel_for.h>
 
 #include "base/stage.h"
-#include "posture/choose.h"
 
 namespace camber::posture {
 namespace {

@@ -1,4 +1,4 @@
-#include "posture/stock_obstacle.h"
+#include "posture/posture.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "repath/bends.h"
+#include "repath/chain_window.h"
 
 #include <algorithm>
 #include <cmath>

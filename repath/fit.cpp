@@ -8,8 +8,6 @@
 #include "repath/chain_window.h"
 #include "repath/joints.h"
 #include "repath/shorten_lines.h"
-#include "repath/smooth_joints.h"
-#include "repath/spare_lines.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {

@@ -7,7 +7,6 @@
 #include "base/units.h"
 #include "nc/emit.h"
 #include "repath/run_text.h"
-#include "repath/short_arcs.h"
 #include "repath/smoothed_path.h"
 
 namespace camber::repath {

@@ -1,4 +1,4 @@
-#include "repath/short_arcs.h"
+#include "repath/resegment.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "repath/smooth_joints.h"
+#include "repath/shorten_lines.h"
 
 #include <algorithm>
 #include <array>

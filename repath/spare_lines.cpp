@@ -1,4 +1,4 @@
-#include "repath/spare_lines.h"
+#include "repath/shorten_lines.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "report/setup_sheet.h"
+#include "report/check_summary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,6 @@
 #include "base/output_file.h"
 #include "camber/presets.h"
 #include "camber/run.h"
-#include "ui/difference.h"
 
 namespace camber::ui {
 namespace {

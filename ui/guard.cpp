@@ -1,4 +1,4 @@
-#include "ui/guard.h"
+#include "ui/server.h"
 
 #include <algorithm>
 #include <array>

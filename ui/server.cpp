@@ -18,8 +18,6 @@
 #include "base/diagnostics.h"
 #include "base/output_file.h"
 #include "ui/bench.h"
-#include "ui/guard.h"
-#include "ui/page_bundle.h"
 
 namespace camber::ui {
 namespace {

@@ -15,7 +15,6 @@
 #include "kinematics/machine_program.h"
 #include "kinematics/program_joints.h"
 #include "nc/interpreter.h"
-#include "posture/stock_obstacle.h"
 #include "removal/cutter.h"
 #include "repath/drop_cutter.h"
 #include "test_paths.h"

@@ -1,7 +1,7 @@
 // Who the server answers, without a server.
 #include <gtest/gtest.h>
 
-#include "ui/guard.h"
+#include "ui/server.h"
 
 namespace camber::ui {
 namespace {
