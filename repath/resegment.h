@@ -2,9 +2,11 @@
 // Resegmenting: runs of short lines replaced by segments just long enough for the control.
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/geometry.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "repath/compress.h"
@@ -94,5 +96,28 @@ struct ShortArcRule {
 /// mode (G2, G3) the text behind relies on. Stretches of one block are left out.
 std::vector<BlockRun> between_arcs(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
                                    const ShortArcRule& rule);
+
+// A smooth curve through the points of a path, within a tolerance.
+
+/// A natural cubic spline over the points' chord length, from the first point to the last. The points in between are
+/// moved by at most `tolerance_mm`, such that the integral of the squared second derivative becomes least for the
+/// largest weight that the tolerance allows: the corners and the noise of the CAM system's chords go, the shape stays.
+/// Source: Reinsch, Smoothing by spline functions, Numerische Mathematik 10 (1967), with the ends held fast.
+class SmoothCurve {
+ public:
+  /// At least two points, no two that follow each other alike. Time and memory grow linearly with their number.
+  SmoothCurve(std::span<const Vec3> points, double tolerance_mm);
+
+  double length_mm() const { return knots_.back(); }  ///< of the chords
+  const std::vector<double>& knots_mm() const { return knots_; }
+  Vec3 at(double s_mm) const;
+  double largest_move_mm() const { return largest_move_; }  ///< of a point
+
+ private:
+  void solve(std::span<const Vec3> points, double weight);
+  std::vector<double> knots_;
+  std::vector<Vec3> values_, second_;  ///< at the knots
+  double largest_move_ = 0;
+};
 
 }  // namespace camber::repath

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 
 #include "repath/fastest.h"
-#include "repath/smooth_curve.h"
 #include "tests/support/path_distance.h"
 #include "tests/support/read_text.h"
 
