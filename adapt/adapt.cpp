@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "adapt/adapter.h"
-#include "adapt/feed_brackets.h"
+#include "adapt/feed_chooser.h"
 #include "simulate/chatter.h"
 #include "simulate/verdict.h"
 
@@ -79,7 +79,7 @@ std::vector<double> Adapter::allowed(double factor) const {
   return allowed_feeds(*cells_, loads_, scaled(limits_, kAim * factor), flutes_);
 }
 
-std::shared_ptr<Candidate> Adapter::choose(double factor, int rounds) const {
+std::shared_ptr<FeedCandidate> Adapter::choose(double factor, int rounds) const {
   return chooser_->choose(allowed(factor), contacts_, rounds);
 }
 
@@ -101,7 +101,7 @@ void Adapter::find_time_limit(AdaptResult& out) {
 }
 
 /// Of the candidate, in the job's coupling.
-ObservedLoads Adapter::predict(const Candidate& candidate, std::vector<std::string>& doubts) {
+ObservedLoads Adapter::predict(const FeedCandidate& candidate, std::vector<std::string>& doubts) {
   ++predictions_;
   const auto show = simulate::progress_of(options_.progress, predictions_ == 1 ? "checking" : "checking again");
   simulate::Prediction p;
@@ -174,7 +174,7 @@ void Adapter::lower_feeds(const Verdict& verdict, std::span<const double> now, s
 }
 
 /// Whether any cell of the cut has a feed that both the loads and the control would let rise by a step.
-bool Adapter::can_be_raised(const Candidate& candidate, std::span<const double> now) const {
+bool Adapter::can_be_raised(const FeedCandidate& candidate, std::span<const double> now) const {
   const FeedBounds& b = chooser_->bounds();
   for (std::size_t i = 0; i < cells_->size(); ++i) {
     if ((*cells_)[i].kept != Kept::no || contacts_[i] != Contact::cut) continue;

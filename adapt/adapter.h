@@ -9,11 +9,27 @@
 #include "adapt/adapt.h"
 #include "adapt/feed_cells.h"
 #include "adapt/feed_chooser.h"
-#include "adapt/judge.h"
 #include "adapt/observed_loads.h"
 #include "simulate/setup.h"
 
 namespace camber::adapt {
+
+// Which loads of an emitted program exceed their limits, and why.
+
+struct Verdict {
+  std::vector<OverLimit> over;      ///< by line
+  std::vector<LoadFigure> figures;  ///< without max_before
+  double excess = 0;                ///< greatest load / limit where the feed might have been lower
+  double peak = 0;                  ///< greatest load / limit outside `over`
+  std::vector<double> of_cell;      ///< greatest load / limit of each cell
+};
+
+/// Judges the observed loads of a candidate.
+Verdict judge(const FeedCandidate& candidate, const ObservedLoads& loads, const FeedCells& cells,
+              const simulate::SimulatedProgram& given, std::span<const LoadLimit> limits, const FeedBounds& bounds);
+
+/// The greatest of each load at the observed feeds, by limit; of chip_min the greatest chip.
+std::vector<double> peaks_of(const ObservedLoads& loads, std::span<const LoadLimit> limits);
 
 class Adapter {
  public:
@@ -43,12 +59,12 @@ class Adapter {
   // adapt.cpp
   void observe_given();
   std::vector<double> allowed(double factor) const;
-  std::shared_ptr<Candidate> choose(double factor, int rounds) const;
+  std::shared_ptr<FeedCandidate> choose(double factor, int rounds) const;
   void find_time_limit(AdaptResult& out);
-  ObservedLoads predict(const Candidate& candidate, std::vector<std::string>& doubts);
+  ObservedLoads predict(const FeedCandidate& candidate, std::vector<std::string>& doubts);
   void correct(AdaptResult& out);
   void keep_feeds(AdaptResult& out);
-  bool can_be_raised(const Candidate& candidate, std::span<const double> now) const;
+  bool can_be_raised(const FeedCandidate& candidate, std::span<const double> now) const;
   void lower_feeds(const Verdict& verdict, std::span<const double> now, std::vector<double>& feeds) const;
 
   // adapter_result.cpp
@@ -79,7 +95,7 @@ class Adapter {
   std::vector<Contact> contacts_;
   ObservedLoads before_, loads_, best_loads_;
   std::vector<double> peaks_before_;  ///< by limit
-  std::shared_ptr<Candidate> best_;
+  std::shared_ptr<FeedCandidate> best_;
   Verdict verdict_;
   simulate::ChatterMargins chatter_, best_chatter_;
   int predictions_ = 0;

@@ -2,9 +2,9 @@
 #include <algorithm>
 
 #include "adapt/adapter.h"
-#include "simulate/collisions.h"
-#include "simulate/machine_checks.h"
-#include "simulate/travel.h"
+#include "checks/collisions.h"
+#include "checks/travel.h"
+#include "motion/machine_checks.h"
 
 namespace camber::adapt {
 
@@ -35,9 +35,9 @@ void Adapter::check_emitted() {
   machine::Job job = job_;
   job.operations = best_->operations;
   Diagnostics found;
-  simulate::check_machine(job.machine, best_->program.text(), best_->program.moves_in_part(), found);
-  simulate::check_travel(job, best_->program.text(), best_->program.moves_in_part(), found);
-  simulate::check_collisions(job, best_->program, blank(), found);
+  motion::check_machine(job.machine, best_->program.text(), best_->program.moves_in_part(), found);
+  checks::check_travel(job, best_->program.text(), best_->program.moves_in_part(), found);
+  checks::check_collisions(job, best_->program, blank(), found);
   for (const Diagnostic& d : found.all())
     if (d.severity == Severity::error) diagnostics_.add(d);
   diagnostics_.throw_if_errors();

@@ -9,18 +9,18 @@
 
 #include "adapt/adapter.h"
 #include "base/units.h"
-#include "checks/plausibility.h"
-#include "simulate/collisions.h"
-#include "simulate/flute_reach.h"
-#include "simulate/operations.h"
-#include "simulate/region.h"
+#include "checks/collisions.h"
+#include "checks/flute_reach.h"
+#include "checks/region_start.h"
+#include "motion/operations.h"
+#include "plausibility/plausibility.h"
 
 namespace camber::adapt {
 namespace {
 
 /// What is known to be refused is refused before the long work.
 void check_given(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
-  checks::check_program(job, program, diagnostics);
+  plausibility::check_program(job, program, diagnostics);
   kinematics::refuse_rotary_motion(program, "adapt chooses feeds of X, Y and Z", diagnostics);
 }
 
@@ -82,14 +82,14 @@ void Adapter::set_up() {
     setup_.emplace(simulate::set_up(job_, {.program = {}, .check = check},
                                     {.program = diagnostics_, .original = diagnostics_, .target = diagnostics_}));
   } else {
-    program_.emplace(simulate::simulate_motion(SourceText::read(job_.program), job_, {}, diagnostics_));
+    program_.emplace(motion::simulate_motion(SourceText::read(job_.program), job_, {}, diagnostics_));
     check(*program_);
     diagnostics_.throw_if_errors();
     blank_.emplace(simulate::make_blank(job_, *program_, diagnostics_, thickest_chip_mm(job_, *program_)));
   }
-  simulate::check_collisions(job_, given(), blank(), diagnostics_);
-  simulate::check_region_start(job_, given(), blank(), diagnostics_);
-  simulate::check_flute_reach(job_, given(), blank(), diagnostics_);
+  checks::check_collisions(job_, given(), blank(), diagnostics_);
+  checks::check_region_start(job_, given(), blank(), diagnostics_);
+  checks::check_flute_reach(job_, given(), blank(), diagnostics_);
   diagnostics_.throw_if_errors();
 }
 
@@ -102,10 +102,10 @@ void Adapter::change_speeds() {
   speeds_ = find_speed_changes(job_, original(), loads.cut.loads);
   SpeedText changed = emit_speed_changes(job_, original(), speeds_);
   if (changed.text.empty()) return;
-  job_.operations = simulate::moved_ranges(
-      simulate::as_lines(job_.operations, original().text(), original().moves_in_part()), changed.block_of_line);
+  job_.operations = motion::moved_ranges(
+      motion::as_lines(job_.operations, original().text(), original().moves_in_part()), changed.block_of_line);
   Diagnostics repeated;  // those of the given program
-  stable_.emplace(simulate::simulate_motion(SourceText(job_.program, changed.text), job_, {}, repeated));
+  stable_.emplace(motion::simulate_motion(SourceText(job_.program, changed.text), job_, {}, repeated));
   stable_blocks_ = std::move(changed.block_of_line);
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "kinematics/control_options.h"
-#include "simulate/operations.h"
+#include "motion/operations.h"
 
 namespace camber::adapt {
 namespace {
@@ -52,31 +52,31 @@ FeedChooser::FeedChooser(const machine::Job& job, const simulate::SimulatedProgr
   top_speed_ = with_constant(bounds_.highest_mm_per_s)->speed_mm_per_s;
 }
 
-std::shared_ptr<Candidate> FeedChooser::with(std::vector<double> feed) const {
-  auto out = std::make_shared<Candidate>();
+std::shared_ptr<FeedCandidate> FeedChooser::with(std::vector<double> feed) const {
+  auto out = std::make_shared<FeedCandidate>();
   out->feed_mm_per_s = std::move(feed);
   out->emission =
       nc::emit_edits(given_.text(), given_.moves_in_part(), cells_.edits(given_.moves_in_part(), out->feed_mm_per_s),
                      kinematics::decimals_for(job_.machine.control, given_.text()));
   Diagnostics repeated;  // those of the given program
   machine::Job job = job_;
-  out->operations = simulate::moved_ranges(simulate::as_lines(job_.operations, given_.text(), given_.moves_in_part()),
-                                           out->emission.block_of_line);
+  out->operations = motion::moved_ranges(motion::as_lines(job_.operations, given_.text(), given_.moves_in_part()),
+                                         out->emission.block_of_line);
   job.operations = out->operations;
-  out->program = simulate::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
+  out->program = motion::simulate_motion(SourceText(job_.program, out->emission.text), job, {}, repeated);
   out->map = nc::MoveMap(given_.moves_in_part(), out->program.moves_in_part(), out->emission.block_of_line);
   out->speed_mm_per_s = greatest_speeds(*out);
   return out;
 }
 
-std::shared_ptr<Candidate> FeedChooser::with_constant(double feed_mm_per_s) const {
+std::shared_ptr<FeedCandidate> FeedChooser::with_constant(double feed_mm_per_s) const {
   std::vector<double> feed(cells_.size());
   for (std::size_t i = 0; i < feed.size(); ++i)
     feed[i] = cells_[i].kept == Kept::no ? feed_mm_per_s : cells_[i].feed_mm_per_s;
   return with(std::move(feed));
 }
 
-std::vector<double> FeedChooser::greatest_speeds(const Candidate& candidate) const {
+std::vector<double> FeedChooser::greatest_speeds(const FeedCandidate& candidate) const {
   std::vector<double> out(cells_.size(), -1);
   const auto& stamps = candidate.program.path.stamps;
   const std::vector<double> speed = speeds_of(job_, candidate.program);
@@ -131,7 +131,7 @@ void FeedChooser::slow_entries(std::span<const Contact> contacts, std::vector<do
   }
 }
 
-bool FeedChooser::lower_excesses(const Candidate& candidate, std::span<const double> allowed, int round,
+bool FeedChooser::lower_excesses(const FeedCandidate& candidate, std::span<const double> allowed, int round,
                                  std::vector<double>& reach_mm, std::vector<double>& ceiling) const {
   bool any = false;
   for (const auto& [from, end] : cells_.chains())
@@ -151,7 +151,7 @@ bool FeedChooser::lower_excesses(const Candidate& candidate, std::span<const dou
   return any;
 }
 
-bool FeedChooser::lower_unreached(const Candidate& candidate, std::vector<double>& reachable) const {
+bool FeedChooser::lower_unreached(const FeedCandidate& candidate, std::vector<double>& reachable) const {
   bool any = false;
   const auto& feed = candidate.feed_mm_per_s;
   for (const auto& [from, end] : cells_.chains())
@@ -172,13 +172,13 @@ bool FeedChooser::lower_unreached(const Candidate& candidate, std::vector<double
   return any;
 }
 
-std::shared_ptr<Candidate> FeedChooser::choose(std::span<const double> allowed, std::span<const Contact> contacts,
-                                               int rounds) const {
+std::shared_ptr<FeedCandidate> FeedChooser::choose(std::span<const double> allowed, std::span<const Contact> contacts,
+                                                   int rounds) const {
   std::vector<double> ceiling = ceiling_of(allowed, contacts), reachable = top_speed_;
   for (double& speed : reachable)
     if (speed > kReached * bounds_.highest_mm_per_s) speed = bounds_.highest_mm_per_s;
   std::vector<double> reach_mm(cells_.size(), 0.0);
-  std::shared_ptr<Candidate> out;
+  std::shared_ptr<FeedCandidate> out;
   for (int round = 0; round < rounds; ++round) {
     out = with(plan_feeds(cells_, {ceiling, reachable}, bounds_));
     const bool excess = lower_excesses(*out, allowed, round, reach_mm, ceiling);

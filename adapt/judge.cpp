@@ -1,4 +1,4 @@
-#include "adapt/judge.h"
+#include "adapt/adapter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ constexpr double kLowest = 1.02;  // of the lowest feed: as good as the lowest
 
 class Judge {
  public:
-  Judge(const Candidate& candidate, const ObservedLoads& loads, const FeedCells& cells,
+  Judge(const FeedCandidate& candidate, const ObservedLoads& loads, const FeedCells& cells,
         const simulate::SimulatedProgram& given, const FeedBounds& bounds)
       : candidate_(candidate), loads_(loads), cells_(cells), given_(given), bounds_(bounds) {}
 
@@ -86,7 +86,7 @@ class Judge {
   }
 
  private:
-  const Candidate& candidate_;
+  const FeedCandidate& candidate_;
   const ObservedLoads& loads_;
   const FeedCells& cells_;
   const simulate::SimulatedProgram& given_;
@@ -95,7 +95,7 @@ class Judge {
 
 }  // namespace
 
-Verdict judge(const Candidate& candidate, const ObservedLoads& loads, const FeedCells& cells,
+Verdict judge(const FeedCandidate& candidate, const ObservedLoads& loads, const FeedCells& cells,
               const simulate::SimulatedProgram& given, std::span<const LoadLimit> limits, const FeedBounds& bounds) {
   Verdict out;
   out.of_cell.assign(cells.size(), 0.0);

@@ -1,4 +1,4 @@
-#include "adapt/speed_change.h"
+#include "adapt/adapt.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,9 @@
 #include "base/folders.h"
 #include "base/output_file.h"
 #include "base/triangle_mesh.h"
-#include "checks/plausibility.h"
+#include "checks/height_survey.h"
+#include "checks/machine_collisions.h"
+#include "checks/setup_checks.h"
 #include "feedmodel/cycle_time.h"
 #include "feedmodel/fitted_range.h"
 #include "kinematics/control_options.h"
@@ -23,15 +25,11 @@
 #include "kinematics/travel_check.h"
 #include "machine/assumptions.h"
 #include "machine/machine_presets.h"
+#include "motion/machine_checks.h"
+#include "plausibility/plausibility.h"
 #include "report/check_summary.h"
 #include "report/joined_json.h"
-#include "report/path_arrays.h"
 #include "report/planned_picture.h"
-#include "report/setup_sheet.h"
-#include "simulate/machine_checks.h"
-#include "simulate/machine_collisions.h"
-#include "simulate/setup_checks.h"
-#include "simulate/thin_walls.h"
 
 namespace camber {
 namespace {
@@ -73,9 +71,9 @@ bool is_to_cut(const nc::Interpretation& moves) {
 /// all of it.
 double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
   const auto check = [&](const simulate::SimulatedProgram& program) {
-    checks::check_program(job, program, diagnostics);
+    plausibility::check_program(job, program, diagnostics);
   };
-  const std::optional<machine::Box> stock = simulate::stock_box(job);
+  const std::optional<machine::Box> stock = checks::stock_box(job);
   if (stock) {
     Diagnostics of_original;
     const simulate::Programs programs = simulate::read_programs(
@@ -85,10 +83,10 @@ double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
     const simulate::SimulatedProgram& program = programs.program;
     if (simulate::check_heights(job, program, programs.original ? &*programs.original : nullptr, diagnostics,
                                 [&](const removal::HeightMap& machined) {
-                                  simulate::suggest_workpiece(job, program, machined, diagnostics);
+                                  checks::suggest_workpiece(job, program, machined, diagnostics);
                                 })) {
       feedmodel::check_range(program.moves_in_program(), job.program, job.machine, diagnostics);
-      simulate::check_machine_collisions(job, program.text(), program.moves_in_program(), diagnostics);
+      checks::check_machine_collisions(job, program.text(), program.moves_in_program(), diagnostics);
       return bytes;
     }
   }
@@ -144,18 +142,18 @@ Checked check_program(const CheckAsked& asked, Diagnostics& found,
   Checked checked{nc::interpret(text, options_as_read(asked.program.options, machine, job), found), {.text = &text}};
   found.throw_if_errors();
   read(checked.moves);
-  if (machine) simulate::check_machine(*machine, text, checked.moves, found);
+  if (machine) motion::check_machine(*machine, text, checked.moves, found);
   if (machine && machine->kinematics.given()) {
     if (kinematics::has_rotary_motion(checked.moves, *machine))
       kinematics::check_offsets(text, checked.moves, kinematics::Asked::tip_control, found);
     kinematics::check_travel(*machine, text, checked.moves, found);
     kinematics::check_reference_points(*machine, text, checked.moves, found);
   }
-  simulate::check_feeds(text, checked.moves, found);
+  motion::check_feeds(text, checked.moves, found);
   if (job)
-    simulate::check_job(*job, text, checked.moves, found);
+    checks::check_job(*job, text, checked.moves, found);
   else if (machine || is_to_cut(checked.moves))
-    simulate::check_spindle(text, checked.moves, found);
+    motion::check_spindle(text, checked.moves, found);
   found.throw_if_errors();
   if (job) checked.summary.memory_bytes = add_what_predict_says(*job, text.source.name(), found);
   found.throw_if_errors();

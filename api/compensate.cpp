@@ -156,7 +156,7 @@ void check_output(const std::string& output, const machine::Job& job) {
 std::string page_of(const machine::Job& job, const CompensationResult& result, const std::string& output,
                     const Diagnostics& diagnostics) {
   Diagnostics ignored;  // said already
-  const auto machined = [&](const SourceText& source) { return simulate::simulate_motion(source, job, {}, ignored); };
+  const auto machined = [&](const SourceText& source) { return motion::simulate_motion(source, job, {}, ignored); };
   const auto rows = [&](const simulate::SimulatedProgram& program) {
     return report::rows_of_program(program, job.machine);
   };
@@ -164,7 +164,7 @@ std::string page_of(const machine::Job& job, const CompensationResult& result, c
   machine::Job emitted_job = job;
   if (job.operations.given() && !result.emitted.block_of_line.empty())
     emitted_job.operations = compensate::moved_ranges(result.scope.operations, result.emitted.block_of_line);
-  const auto after = simulate::simulate_motion(SourceText(job.program, result.emitted.text), emitted_job, {}, ignored);
+  const auto after = motion::simulate_motion(SourceText(job.program, result.emitted.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
   if (!result.passes.text.empty()) from = machined(SourceText(job.program, result.passes.text)).moves_in_part();
   return report::html_report(report::compensate_report(

@@ -6,15 +6,14 @@
 
 #include "api/run.h"
 #include "base/units.h"
-#include "checks/plausibility.h"
+#include "checks/collisions.h"
+#include "checks/flute_reach.h"
 #include "copymill/copy_milling.h"
 #include "machine/assumptions.h"
 #include "machine/copy_operations.h"
 #include "machine/job_file.h"
-#include "report/copy_page.h"
+#include "plausibility/plausibility.h"
 #include "report/copy_summary.h"
-#include "simulate/collisions.h"
-#include "simulate/flute_reach.h"
 #include "simulate/predict.h"
 
 namespace camber {
@@ -28,7 +27,7 @@ struct CopyJob {
 CopyJob read_copy_job(const std::string& path, Diagnostics& diagnostics) {
   CopyJob out{machine::read_unprogrammed_job(path, diagnostics), {}};
   out.operations = machine::read_copy_operations(path, out.job, diagnostics);
-  checks::check_job_values(out.job, diagnostics);
+  plausibility::check_job_values(out.job, diagnostics);
   diagnostics.throw_if_errors();
   return out;
 }
@@ -39,9 +38,9 @@ void check_emitted(const CopyJob& job, const std::string& program, const copymil
                    Diagnostics& diagnostics) {
   if (std::ranges::all_of(made.operations, &copymill::OperationSummary::nothing_left)) return;
   const simulate::SimulatedProgram emitted =
-      simulate::simulate_motion(SourceText(program, made.text), job.job, {}, diagnostics);
-  simulate::check_collisions(job.job, emitted, *made.blank, diagnostics);
-  simulate::check_flute_reach(job.job, emitted, *made.blank, diagnostics);
+      motion::simulate_motion(SourceText(program, made.text), job.job, {}, diagnostics);
+  checks::check_collisions(job.job, emitted, *made.blank, diagnostics);
+  checks::check_flute_reach(job.job, emitted, *made.blank, diagnostics);
 }
 
 CopyTick tick_of(const copymill::Tick& t) {

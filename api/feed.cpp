@@ -15,9 +15,9 @@
 #include "kinematics/machine_moves.h"
 #include "kinematics/machine_program.h"
 #include "machine/assumptions.h"
-#include "report/feed_summary.h"
+#include "motion/machine_checks.h"
+#include "report/time_summary.h"
 #include "report/timed_track.h"
-#include "simulate/machine_checks.h"
 
 namespace camber {
 namespace {
@@ -49,8 +49,8 @@ nc::Interpretation api::moves_of_feed(const nc::Program& text, const machine::Ma
   nc::Interpretation moves =
       kinematics::read_moves(text, machine, {.given = options, .rotary = kinematics::RotaryWords::always}, diagnostics);
   diagnostics.throw_if_errors();
-  simulate::check_machine(machine, text, moves, diagnostics);
-  simulate::check_spindle(text, moves, diagnostics);
+  motion::check_machine(machine, text, moves, diagnostics);
+  motion::check_spindle(text, moves, diagnostics);
   check_rotary_motion(machine, text, moves, true, diagnostics);
   if (kinematics::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
   if (!csv.empty()) feedmodel::check_feed_csv_size(moves, machine, csv, diagnostics);

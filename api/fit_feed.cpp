@@ -19,8 +19,6 @@
 #include "kinematics/machine_moves.h"
 #include "kinematics/machine_program.h"
 #include "kinematics/offset_check.h"
-#include "report/block_time_plot.h"
-#include "report/fit_feed_page.h"
 #include "report/fit_summary.h"
 
 namespace camber {

@@ -3,7 +3,6 @@
 #include "api/run.h"
 #include "dynamics/fit_modes.h"
 #include "report/fit_summary.h"
-#include "report/response_svg.h"
 
 namespace camber {
 

@@ -6,7 +6,7 @@
 #include "api/job.h"
 #include "api/run.h"
 #include "calib/fit_parts.h"
-#include "report/fit_parts_report.h"
+#include "report/fit_summary.h"
 
 namespace camber {
 namespace {

@@ -7,7 +7,6 @@
 #include "dynamics/tool_lobes.h"
 #include "dynamics/tool_modes.h"
 #include "report/lobes_summary.h"
-#include "report/lobes_svg.h"
 
 namespace camber {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <utility>
 
+#include "checks/machine_collisions.h"
 #include "kinematics/machine_program.h"
 #include "kinematics/travel_check.h"
-#include "simulate/machine_collisions.h"
 
 namespace camber::api {
 
@@ -24,7 +24,7 @@ void check_new_program(const machine::Machine& machine, const machine::Job* job,
   for (nc::Move& move : moves.moves) move.block = block_of_line[move.block];
   kinematics::check_travel(machine, given, moves, diagnostics);
   if (diagnostics.has_errors() || !job || machine.bodies.empty()) return;
-  simulate::check_machine_collisions(*job, given, moves, diagnostics);
+  checks::check_machine_collisions(*job, given, moves, diagnostics);
 }
 
 }  // namespace camber::api

@@ -17,7 +17,7 @@ kinematics::MachineProgram read_new_program(const machine::Machine& machine, con
                                             const std::string& text, const nc::InterpreterOptions& interpreter);
 
 /// Runs kinematics::check_travel on the new moves and, for a job whose machine has bodies and where that finds
-/// nothing, simulate::check_machine_collisions. Messages name blocks of the given program.
+/// nothing, checks::check_machine_collisions. Messages name blocks of the given program.
 void check_new_program(const machine::Machine& machine, const machine::Job* job, const nc::Program& given,
                        nc::Interpretation moves, const std::vector<std::uint32_t>& block_of_line,
                        Diagnostics& diagnostics);

@@ -16,7 +16,6 @@
 #include "kinematics/control_options.h"
 #include "machine/machine_presets.h"
 #include "nc/dialect.h"
-#include "plan/plan_table.h"
 #include "plan/programs.h"
 #include "report/plan_summary.h"
 

@@ -9,7 +9,7 @@
 #include "api/run.h"
 #include "kinematics/machine_program.h"
 #include "nc/language.h"
-#include "report/post_summary.h"
+#include "report/rewrite_summary.h"
 
 namespace camber {
 namespace {

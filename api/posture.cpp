@@ -16,11 +16,11 @@
 #include "api/rotary_program.h"
 #include "api/run.h"
 #include "base/units.h"
-#include "checks/plausibility.h"
 #include "feedmodel/cycle_time.h"
 #include "kinematics/control_options.h"
 #include "kinematics/machine_program.h"
 #include "nc/language.h"
+#include "plausibility/plausibility.h"
 #include "repath/post.h"
 #include "report/posture_summary.h"
 
@@ -104,7 +104,7 @@ report::PosturedOverhangs posture_programs(const PostureCommand& command, Diagno
   if (!options.given.inch) options.given.inch = command.job->inch;
   const nc::Interpretation moves = kinematics::read_moves(*command.text, command.job->machine, options, diagnostics);
   diagnostics.throw_if_errors();
-  checks::check_job_values(*command.job, diagnostics);
+  plausibility::check_job_values(*command.job, diagnostics);
   diagnostics.throw_if_errors();
   const int tool = tool_of(command);
   const nc::OneDirection written = written_as(command);

@@ -13,17 +13,15 @@
 #include "calib/column_map.h"
 #include "calib/trace.h"
 #include "calib/traced_motion.h"
-#include "checks/plausibility.h"
 #include "feedmodel/feed_csv.h"
 #include "feedmodel/fitted_range.h"
 #include "machine/assumptions.h"
+#include "plausibility/plausibility.h"
 #include "report/chatter_page.h"
 #include "report/feature_results.h"
-#include "report/forces_at_csv.h"
 #include "report/forces_csv.h"
 #include "report/mesh_file.h"
 #include "report/report_data.h"
-#include "report/spindle_load.h"
 #include "report/summary.h"
 #include "simulate/chatter.h"
 #include "simulate/spindle_power.h"
@@ -84,10 +82,10 @@ simulate::TracedRun exchange_motion(const machine::Job& job, simulate::Simulated
                           .model = {},
                           .predicted = {},
                           .difference_um = {}};
-  out.model = simulate::motion_at(program, job, out.samples);
+  out.model = motion::motion_at(program, job, out.samples);
   out.model.feed.time_s = measured.time_s;
   out.model.feed.cutting_time_s = measured.cutting_time_s;
-  simulate::exchange(program, out.model);
+  motion::exchange(program, out.model);
   return out;
 }
 
@@ -163,7 +161,7 @@ PreparedJob prepare(const machine::Job& job, const PredictOptions& options, cons
   const StageScope stages(given.progress);
   std::optional<calib::TracedMotion> measured;
   const auto check = [&](const simulate::SimulatedProgram& program) {
-    checks::check_program(job, program, diagnostics);
+    plausibility::check_program(job, program, diagnostics);
     if (!options.trace.empty()) kinematics::refuse_rotary_motion(program, "traces are of X, Y and Z", diagnostics);
     if (!options.output_folder.empty())
       feedmodel::check_feed_csv_size(program.moves_in_program(), job.machine, options.output_folder + "/feed.csv",

@@ -8,11 +8,10 @@
 #include "api/run.h"
 #include "base/triangle_mesh.h"
 #include "camber/resegment.h"
-#include "checks/plausibility.h"
 #include "kinematics/control_options.h"
+#include "plausibility/plausibility.h"
 #include "repath/fastest.h"
 #include "repath/raster.h"
-#include "repath/raster_text.h"
 #include "report/rewrite_summary.h"
 
 namespace camber {
@@ -140,7 +139,7 @@ RasterResult make_raster(const Job& given, const RasterOptions& asked, api::Run&
                  fmt::format("the spindle turns at {:g} rpm at most; --spindle-rpm {:g} was given",
                              job.machine.spindle.max_rpm, asked.spindle_rpm),
                  "spindle-speed");
-  checks::check_job_values(job, found);
+  plausibility::check_job_values(job, found);
   run.settle_first(found);
 
   const TriangleMesh mesh = read_closed_part(part);

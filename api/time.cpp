@@ -20,12 +20,12 @@
 #include "machine/assumptions.h"
 #include "machine/cycle_cases.h"
 #include "machine/set_number.h"
+#include "motion/machine_checks.h"
 #include "nc/language.h"
 #include "report/path_card.h"
 #include "report/planned_picture.h"
 #include "report/time_summary.h"
 #include "report/timed_track.h"
-#include "simulate/machine_checks.h"
 
 namespace camber {
 namespace {
@@ -97,7 +97,7 @@ nc::Interpretation timed_moves(const nc::Program& program, const machine::Machin
   nc::Interpretation moves = kinematics::read_moves(program, machine, options, diagnostics);
   check_low_feeds(program, moves, diagnostics);
   if (diagnostics.errors() == 0) {
-    simulate::check_machine(machine, program, moves, diagnostics);
+    motion::check_machine(machine, program, moves, diagnostics);
     api::check_rotary_motion(machine, program, moves, false, diagnostics);
     if (kinematics::has_rotary_motion(moves, machine)) kinematics::place_moves(moves, machine);
   }

@@ -44,4 +44,9 @@ void add_help(CLI::App& app, Action& chosen);
 /// The whole program. Returns the exit status; does not throw.
 int run(int argc, const char* const* argv);
 
+// Scripts that complete camber's words at a shell's prompt, made from what the command line takes.
+
+/// shell: "bash", "zsh" or "fish". To be loaded by it, or to lie where it looks for completions.
+std::string completion_script(const CLI::App& app, const std::string& shell);
+
 }  // namespace camber::cli

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
-#include "cli/completion.h"
 
 namespace camber::cli {
 namespace {

@@ -1,6 +1,6 @@
 # The library for other programs: the objects of every room but cli/ in one file, with the headers of include/camber/,
 # a CMake package, a pkg-config file, and the find module for OpenVDB, which Debian's package comes without.
-set(rooms base nc machine kinematics feedmodel repath removal deflection dynamics workpiece simulate inspect checks posture adapt copymill compensate distribute plan calib report api)
+set(rooms base nc machine kinematics feedmodel repath removal deflection dynamics workpiece motion checks simulate inspect plausibility posture adapt copymill compensate distribute plan calib report api)
 list(TRANSFORM rooms REPLACE "(.+)" "$<TARGET_OBJECTS:camber_\\1>" OUTPUT_VARIABLE objects)
 add_library(camber_library ${objects})
 add_library(camber::camber ALIAS camber_library)

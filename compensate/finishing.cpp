@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "motion/operations.h"
 #include "removal/tool_path.h"
-#include "simulate/operations.h"
 
 namespace camber::compensate {
 namespace {
@@ -53,7 +53,7 @@ Finishing find_finishing(const machine::Job& job, const SimulatedProgram& progra
   distribute_surface(program, surface, of_move, out.operations);
   const auto& wanted = job.compensation.operations;
   out.moves = removal::selected_moves(program.moves_in_part(),
-                                      simulate::as_lines(wanted, program.text(), program.moves_in_part()));
+                                      motion::as_lines(wanted, program.text(), program.moves_in_part()));
   for (std::size_t m = 0; m < out.moves.size(); ++m) {
     out.moves[m] = out.moves[m] && program.selected[m];
     if (!out.moves[m]) continue;

@@ -6,14 +6,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "checks/plausibility.h"
 #include "compensate/hidden_rows.h"
 #include "compensate/judge.h"
 #include "compensate/passes.h"
 #include "compensate/propose.h"
+#include "motion/operations.h"
 #include "nc/emit.h"
+#include "plausibility/plausibility.h"
 #include "removal/engagement.h"
-#include "simulate/operations.h"
 #include "simulate/verdict.h"
 
 namespace camber::compensate {
@@ -54,7 +54,7 @@ void check_given(const machine::Job& job, const SimulatedProgram& program, Diagn
   if (early.operations.size() == 1 || job.compensation.operations.given())
     check_compensated(program, early.moves, diagnostics);
   if (job.compensation.has(machine::Lever::passes)) check_allowance(job, diagnostics);
-  checks::check_program(job, program, diagnostics);
+  plausibility::check_program(job, program, diagnostics);
 }
 
 std::function<void(double)> progress(const Task& task, const std::string& what) {
@@ -139,7 +139,7 @@ void select_moves(Task& task, const Trial& given, CompensationResult& out) {
   out.scope.finishing = find_finishing(task.job, program, given.surface);
   const std::vector<bool>& moves = out.scope.finishing.moves;
   out.scope.lines = line_roles(program, moves);
-  out.scope.operations = simulate::as_lines(task.job.operations, program.text(), program.moves_in_part());
+  out.scope.operations = motion::as_lines(task.job.operations, program.text(), program.moves_in_part());
   check_levers(task, moves);
   out.scope.feed_unusable = task.feed_unusable;
   nc::warn_of_uneditable(program.text(), program.moves_in_part(), moves, task.diagnostics);

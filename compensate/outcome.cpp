@@ -192,7 +192,7 @@ std::vector<CauseFigure> causes(const Task& task, const State& state, const Comp
 /// Errors of the travel of the emitted program; its warnings are the given one's, which are said.
 void check_emitted_travel(const machine::Job& job, const SimulatedProgram& program, Diagnostics& diagnostics) {
   Diagnostics travel;
-  simulate::check_travel(job, program, travel);
+  checks::check_travel(job, program, travel);
   for (const Diagnostic& d : travel.all())
     if (d.severity == Severity::error) diagnostics.add(d);
   diagnostics.throw_if_errors();

@@ -64,7 +64,7 @@ std::vector<double> changes_mm(const ParameterGroup& group, const ShiftedProgram
   if (emitted) other.operations = emitted->operations;
   Diagnostics repeated;
   const auto& text = (emitted ? emitted->program : *of.program).text().source;
-  const auto program = simulate::simulate_motion(text, other, {}, repeated);
+  const auto program = motion::simulate_motion(text, other, {}, repeated);
   const auto prediction =
       simulate::predict_surface(of.predictor, other, *of.target, program, progress, "uncertainty: " + group.name);
   std::vector<double> out;

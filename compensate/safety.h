@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "checks/travel.h"
 #include "compensate/attribution.h"
 #include "machine/job_file.h"
 #include "removal/form_error.h"
 #include "simulate/predict.h"
-#include "simulate/travel.h"
 
 namespace camber::compensate {
 
@@ -45,7 +45,7 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Refer
 Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
                             const simulate::SimulatedProgram& emitted, double tolerance_um);
 
-using simulate::check_travel;
+using checks::check_travel;
 
 inline constexpr double kWorse_mm = 0.001;  ///< a place is worse if its error exceeds the given one by more than this
 

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "checks/collisions.h"
 #include "compensate/fit_shift.h"
 #include "compensate/propose.h"
-#include "simulate/collisions.h"
-#include "simulate/operations.h"
+#include "motion/operations.h"
 
 namespace camber::compensate {
 
@@ -40,7 +40,7 @@ std::vector<std::size_t> without_least(const std::vector<PassRun>& runs, std::ve
 std::optional<std::uint32_t> block_behind_collision(const machine::Job& job, const SimulatedProgram& program,
                                                     const nc::RepeatedText& text, const removal::Stock& blank) {
   if (job.simulation.collisions == machine::Collisions::off) return std::nullopt;
-  for (const simulate::Collision& c : simulate::find_collisions(job, program, blank)) {
+  for (const checks::Collision& c : checks::find_collisions(job, program, blank)) {
     std::size_t line = program.moves_in_part().moves[c.move].block;
     if (!text.added[line] || text.block_of_line[line] != nc::Emission::kNoBlock) continue;
     while (text.added[line]) ++line;
@@ -131,10 +131,10 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
     RepeatedCuts repeated{.text = with_first_cuts(program, runs, chosen, first.emission),
                           .allowance_mm = first.allowance_mm};
     machine::Job job = task.job;
-    job.operations = moved_ranges(simulate::as_lines(job.operations, program.text(), program.moves_in_part()),
+    job.operations = moved_ranges(motion::as_lines(job.operations, program.text(), program.moves_in_part()),
                                   repeated.text.block_of_line);
     Diagnostics ignored;  // the given program's
-    SimulatedProgram made = simulate::simulate_motion(SourceText(job.program, repeated.text.text), job, {}, ignored);
+    SimulatedProgram made = motion::simulate_motion(SourceText(job.program, repeated.text.text), job, {}, ignored);
     std::uint32_t wrong = 0;
     auto moves = moves_in_repeated(program.moves_in_part(), made.moves_in_part(), repeated.text, wrong);
     if (!moves) {

@@ -62,7 +62,7 @@ std::shared_ptr<const Emitted> emit(const ShiftedProgram& from, const ShiftPath&
   machine::Job job = from.job;
   out->operations = moved_ranges(job.operations, out->emission.block_of_line);
   job.operations = out->operations;
-  out->program = simulate::simulate_motion(SourceText(job.program, out->emission.text), job, {}, repeated);
+  out->program = motion::simulate_motion(SourceText(job.program, out->emission.text), job, {}, repeated);
   out->map = nc::MoveMap(from.program->moves_in_part(), out->program.moves_in_part(), out->emission.block_of_line);
   out->quality = path_quality(from.program->moves_in_part(), compensated, out->program.moves_in_part(), out->map,
                               job.machine.control.block_time_s, job.compensation.max_angle_growth_rad);

@@ -8,8 +8,8 @@
 #include "compensate/attribution.h"
 #include "compensate/path_quality.h"
 #include "kinematics/control_options.h"
+#include "motion/operations.h"
 #include "nc/emit.h"
-#include "simulate/operations.h"
 #include "simulate/setup.h"
 
 namespace camber::compensate {
@@ -48,7 +48,7 @@ std::vector<bool> turning_moves(const simulate::SimulatedProgram& program);
 std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& program, std::vector<nc::MoveEdit> edits);
 
 using kinematics::decimals_for;
-using simulate::moved_ranges;
+using motion::moved_ranges;
 
 /// A program whose path is shifted, and what its trials need beside the path.
 struct ShiftedProgram {

@@ -7,11 +7,11 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "checks/plausibility.h"
 #include "compensate/header.h"
 #include "compensate/safety.h"
 #include "compensate/trial.h"
 #include "machine/machine_presets.h"
+#include "plausibility/plausibility.h"
 #include "simulate/verdict.h"
 
 namespace camber::compensate {
@@ -185,7 +185,7 @@ Verification verify(const machine::Job& job, const Record& record, Diagnostics& 
                     const simulate::Progress& progress) {
   Diagnostics of_given;  // it was warned of when it was compensated
   const auto check = [&](const simulate::SimulatedProgram& emitted) {
-    checks::check_program(job, emitted, diagnostics);
+    plausibility::check_program(job, emitted, diagnostics);
   };
   const simulate::Setup setup = simulate::set_up(job, {.check = check, .clearance = true},
                                                  {.program = diagnostics, .original = of_given, .target = diagnostics});

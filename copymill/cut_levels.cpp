@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "base/stage.h"
-#include "copymill/level_region.h"
 #include "copymill/levels.h"
 #include "copymill/operation.h"
 #include "copymill/slotting.h"

@@ -1,4 +1,4 @@
-#include "copymill/feed_motion.h"
+#include "copymill/runner.h"
 
 #include <algorithm>
 #include <cassert>

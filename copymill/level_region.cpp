@@ -1,4 +1,4 @@
-#include "copymill/level_region.h"
+#include "copymill/levels.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "copymill/trochoid.h"
+#include "copymill/slotting.h"
 
 #include <algorithm>
 #include <cassert>

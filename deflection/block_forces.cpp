@@ -41,13 +41,13 @@ CAMBER_VECTOR_CLONES
 void add_four(const EdgeForces& e, const Sums& s) {
   std::array<double, kSteps> x, y;
   for (std::size_t l = 0; l < kSteps; ++l) {
-    const ForceComponents f =
-        force_components(e.tangential[l], e.radial[l], e.axial[l], s.sine, s.cosine, s.sine_phi[l], s.cosine_phi[l]);
+    const LoadComponents f = load_components(e.tangential[l], e.radial[l], e.axial[l], s.sine, s.cosine, s.sine_phi[l],
+                                             s.cosine_phi[l], s.radius_mm);
     x[l] = f.x, y[l] = f.y;
     s.fx[l] += f.x;
     s.fy[l] += f.y;
     s.fz[l] += f.z;
-    s.torque[l] += e.tangential[l] * s.radius_mm;
+    s.torque[l] += f.torque;
   }
   for (int n = 0; n < s.nodes; ++n) {
     const double wx = s.compliance[n] + s.axis_x, wy = s.compliance[n] + s.axis_y;
@@ -90,8 +90,9 @@ void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, st
   const double* compliance = compliance_.data() + static_cast<std::size_t>(e.ring) * nodes;
   const bool affine = machine::is_affine(material_.law) && edge_ramp_mm_ == 0;
   const auto on_tool = [&](const EdgeForce& f) {
-    const ForceComponents on = force_components(f.tangential_N, f.radial_N, f.axial_N, sine, cosine, sn, c);
-    return std::array<double, 4>{on.x, on.y, on.z, f.tangential_N * ring.profile.radius_mm};
+    const LoadComponents on =
+        load_components(f.tangential_N, f.radial_N, f.axial_N, sine, cosine, sn, c, ring.profile.radius_mm);
+    return std::array<double, 4>{on.x, on.y, on.z, on.torque};
   };
   // Affine: a millimetre of thickness, and the edge.
   const EdgeForce k = affine ? edge_force_slope(material_, 1) : EdgeForce{};

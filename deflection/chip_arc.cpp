@@ -1,4 +1,4 @@
-#include "deflection/chip_arc.h"
+#include "deflection/tooth_pass.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "deflection/reading_pace.h"
+#include "deflection/static_cut.h"
 
 #include <algorithm>
 #include <cmath>

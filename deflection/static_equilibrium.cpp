@@ -1,4 +1,4 @@
-#include "deflection/static_equilibrium.h"
+#include "deflection/static_cut.h"
 
 #include <algorithm>
 #include <array>

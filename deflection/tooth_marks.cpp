@@ -1,4 +1,4 @@
-#include "deflection/tooth_marks.h"
+#include "deflection/run_out_offsets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -92,10 +92,10 @@ void ToothPassModel::add(const removal::ChipSample& chip, double thickness_mm, c
   const auto& ring = envelope_.rings[r];
   const double width_mm = chip.width_fraction() * ring.width_mm;
   const EdgeForce e = edge_force(material_, thickness_mm, width_mm, edge_ramp_mm_);
-  const Vec3 force = force_on_tool(e, d);
+  const auto [force, torque] = load_on_tool(e, d, ring.profile.radius_mm);
   out.force_N[m] += force;
-  out.torque_Nmm[m] += e.tangential_N * ring.profile.radius_mm;
-  out.work_Nmm += e.tangential_N * ring.profile.radius_mm * 2 * kPi / envelope_.steps;
+  out.torque_Nmm[m] += torque;
+  out.work_Nmm += torque * 2 * kPi / envelope_.steps;
   out.chip_max_mm = std::max(out.chip_max_mm, thickness_mm);
   out.chip_area_mm2 += chip.width_fraction() * chip_area_mm2(ring, envelope_.steps);
   for (std::size_t n = 0; n < nodes; ++n) {
@@ -187,8 +187,7 @@ void ToothPassModel::add_to_turn(std::span<const removal::ChipSample> chips, std
       }
       TurnForces::Tooth& tooth = turn.teeth[static_cast<std::size_t>(j)][static_cast<std::size_t>(at)];
       const EdgeForce e = edge_force(material_, h, chip.width_fraction() * ring.width_mm, edge_ramp_mm_);
-      tooth.force_N += force_on_tool(e, d);
-      tooth.torque_Nmm += e.tangential_N * ring.profile.radius_mm;
+      tooth += load_on_tool(e, d, ring.profile.radius_mm);
       tooth.chip_max_mm = std::max(tooth.chip_max_mm, h);
     }
   }

@@ -32,9 +32,7 @@ struct ToothPass {
 /// One revolution of the spindle, tooth by tooth. Turned clockwise by angle a from where tooth 1's edge at the tip
 /// points along +X, the edge of tooth t stands at t pitches minus a, counter-clockwise from +X.
 struct TurnForces {
-  struct Tooth {
-    Vec3 force_N = Vec3::Zero();  ///< on the tool, tool's frame
-    double torque_Nmm = 0;
+  struct Tooth : ToolLoad {
     double chip_max_mm = 0;  ///< maximum along the edge at this instant
   };
   std::vector<std::vector<Tooth>> teeth;  ///< [flutes][rotation steps of a turn]
@@ -133,5 +131,32 @@ class ToothPassModel {
 /// linear interpolation between nodes a tenth of L apart beside a force has an error of less than a twentieth of a
 /// percent of F L^3 / (3 E I).
 std::vector<double> node_heights(double top_mm, double fluted_length_mm = 0);
+
+// Where the chips of a tooth passing are around the tool: what a vibration of the tool meets.
+
+/// Integrals over the envelope in the cut, of height dz and angle dphi: of 1, of cos 2 phi and sin 2 phi, and of the
+/// sine of the profile's normal angle. phi counter-clockwise from x in the tool's frame (tool_frame.h). With them the
+/// mean directional matrix of any engagement is known (dynamics/vibrating_cut.h).
+struct ChipArc {
+  float area_mm_rad = 0;  ///< area of the arc: for a single one its depth times its angle
+  float cosine_mm_rad = 0, sine_mm_rad = 0;
+  float wall_mm_rad = 0;  ///< as much as the first on an upright wall, less on a floor
+
+  ChipArc operator+(const ChipArc& b) const {
+    return {area_mm_rad + b.area_mm_rad, cosine_mm_rad + b.cosine_mm_rad, sine_mm_rad + b.sine_mm_rad,
+            wall_mm_rad + b.wall_mm_rad};
+  }
+  friend ChipArc operator*(double f, const ChipArc& a) {
+    const auto k = static_cast<float>(f);
+    return {k * a.area_mm_rad, k * a.cosine_mm_rad, k * a.sine_mm_rad, k * a.wall_mm_rad};
+  }
+};
+
+/// Chips thinner than this are no cut: a tool that vibrates swings out of them.
+constexpr float kThinnestChip_mm = 5e-4f;
+
+ChipArc chip_arc(const removal::EnvelopeGrid& envelope, std::span<const removal::ChipSample> chips);
+ChipArc chip_arc(const removal::EnvelopeGrid& envelope, const removal::EnvelopeBlocks& blocks,
+                 std::span<const removal::ChipBlock> chips);
 
 }  // namespace camber::deflection

@@ -1,4 +1,4 @@
-#include "distribute/part_files.h"
+#include "distribute/section_run.h"
 
 #include <algorithm>
 #include <cstdlib>

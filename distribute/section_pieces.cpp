@@ -6,14 +6,15 @@
 
 namespace camber::distribute {
 
+using namespace motion;
 using namespace simulate;
 
 using machine::Job;
 using removal::Region;
 
-PieceRange section_pieces(const std::vector<PathPiece>& pieces, std::size_t section, std::size_t sections) {
+PieceRange section_pieces(const std::vector<StretchPiece>& pieces, std::size_t section, std::size_t sections) {
   std::size_t total = 0, before = 0;
-  for (const PathPiece& p : pieces) total += p.count;
+  for (const StretchPiece& p : pieces) total += p.count;
   PieceRange out{pieces.size(), pieces.size()};
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     // The section in which the piece's middle lies.
@@ -29,7 +30,7 @@ PieceRange section_pieces(const std::vector<PathPiece>& pieces, std::size_t sect
   return out;
 }
 
-std::vector<RunPieces> runs_of(const std::vector<PathPiece>& pieces, const PieceRange& range) {
+std::vector<RunPieces> runs_of(const std::vector<StretchPiece>& pieces, const PieceRange& range) {
   std::vector<RunPieces> out;
   for (std::size_t p = range.begin; p < range.end; ++p) {
     if (out.empty() || out.back().run != pieces[p].run) out.push_back({pieces[p].run, {p, p}});
@@ -57,7 +58,7 @@ Region reach_of_tips(const Job& job, const removal::ToolRun& run, const Region& 
   return out;
 }
 
-Region reach_of(const Job& job, const PathStretch& path, const PathPiece& piece) {
+Region reach_of(const Job& job, const PathStretch& path, const StretchPiece& piece) {
   Region out;
   const double around = around_mm(job, path.run_of(piece));
   const Vec3 wide(around, around, around);
@@ -73,7 +74,7 @@ Region reach_of(const Job& job, const PathStretch& path, const PathPiece& piece)
   return out;
 }
 
-Region reach_of(const Job& job, const PathStretch& path, const std::vector<PathPiece>& pieces,
+Region reach_of(const Job& job, const PathStretch& path, const std::vector<StretchPiece>& pieces,
                 const PieceRange& range) {
   Region out;
   for (std::size_t p = range.begin; p < range.end; ++p) out.add(reach_of(job, path, pieces[p]));

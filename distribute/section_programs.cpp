@@ -1,4 +1,4 @@
-#include "distribute/section_programs.h"
+#include "distribute/sections.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,6 +9,7 @@
 
 namespace camber::distribute {
 
+using namespace motion;
 using namespace simulate;
 
 using machine::Job;
@@ -70,7 +71,7 @@ Outlines time_program(SimulatedProgram& program, const Job& job, std::size_t lon
 /// Numbers of the stamps of some pieces.
 ListRange numbers_of(const PathStretch& path, const SectionPlace& place) {
   if (place.own.empty()) return {};
-  const PathPiece& last = place.pieces[place.own.end - 1];
+  const StretchPiece& last = place.pieces[place.own.end - 1];
   return {path.begin_of(place.pieces[place.own.begin]), path.begin_of(last) + last.count};
 }
 
@@ -79,7 +80,7 @@ Region reach_in(const Job& job, const PathOutline& outline, const SectionPlace& 
   const PathStretch path(outline.runs, {}, {});
   Region out;
   for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
-    const PathPiece& piece = place.pieces[p];
+    const StretchPiece& piece = place.pieces[p];
     if (piece.count == 0) continue;
     const std::size_t begin = path.begin_of(piece), end = begin + piece.count;
     Region tips;
@@ -118,7 +119,7 @@ std::vector<bool> blocks_near(const Job& job, const PathOutline& outline, const 
 /// Puts the stamps of some blocks.
 class BlockKeeper {
  public:
-  BlockKeeper(ThinPath& path, std::vector<bool> blocks) : stamps_(path.stamps), blocks_(std::move(blocks)) {
+  BlockKeeper(SparsePath& path, std::vector<bool> blocks) : stamps_(path.stamps), blocks_(std::move(blocks)) {
     stamps_ = SparseList<Stamp>();  // before there is another one
     stamps_ = SparseList<Stamp>(path.outline.stamps);
   }
@@ -175,7 +176,7 @@ void SectionPrograms::go_to(std::size_t section, std::size_t sections) {
   region = joined_region(job_, joined_region(job_, region));
   // What was cut far below cuts here with its flank.
   region.min_mm.z() = std::min(region.min_mm.z(), -1e9);
-  const auto keeper = [&](ThinPath& path) {
+  const auto keeper = [&](SparsePath& path) {
     const PathOutline& outline = path.outline;
     const ListRange own = numbers_of(PathStretch(outline.runs, {}, {}), place_in(outline, section, sections));
     return BlockKeeper(path, blocks_near(job_, outline, own, region));
@@ -204,12 +205,12 @@ PathStretch SectionPrograms::target_path() const {
 Region SectionPrograms::reach(std::size_t section, std::size_t sections) const {
   Region out;
   if (thin_) {
-    for (const ThinPath* path : {&std::as_const(thin_->path), &thin_->target()})
+    for (const SparsePath* path : {&std::as_const(thin_->path), &thin_->target()})
       out.add(reach_in(job_, path->outline, place_in(path->outline, section, sections)));
     return out;
   }
   for (const PathStretch& path : {this->path(), target_path()}) {
-    const std::vector<PathPiece> pieces = path_pieces(path);
+    const std::vector<StretchPiece> pieces = path_pieces(path);
     out.add(reach_of(job_, path, pieces, section_pieces(pieces, section, sections)));
   }
   return out;

@@ -5,7 +5,7 @@
 
 #include "base/bytes.h"
 #include "base/stage.h"
-#include "checks/plausibility.h"
+#include "plausibility/plausibility.h"
 #include "simulate/turn.h"
 
 namespace camber::distribute {
@@ -40,7 +40,7 @@ SectionRun::SectionRun(const machine::Job& job, PartKey key, PartStore& store, P
   refuse_elastic_part(job, diagnostics);
   const auto check = [&](const simulate::SimulatedProgram& program) {
     diagnostics.append(said_);
-    checks::check_program(job, program, diagnostics);
+    plausibility::check_program(job, program, diagnostics);
     diagnostics.throw_if_errors();
   };
   Diagnostics of_original;

@@ -7,6 +7,7 @@
 
 namespace camber::distribute {
 
+using namespace motion;
 using namespace simulate;
 
 using removal::Region;

@@ -12,14 +12,14 @@ namespace camber::distribute {
 
 /// How a path is divided, and which part is a section's own.
 struct SectionPlace {
-  std::vector<simulate::PathPiece> pieces;
+  std::vector<motion::StretchPiece> pieces;
   std::vector<PieceRange> ranges;  ///< ranges of all sections
   std::size_t section = 0;
   PieceRange own{};
 
-  SectionPlace(const simulate::PathStretch& path, std::size_t section, std::size_t sections);
+  SectionPlace(const motion::PathStretch& path, std::size_t section, std::size_t sections);
   /// Divided as another path of as many pieces.
-  SectionPlace(const simulate::PathStretch& path, std::size_t section, std::vector<PieceRange> ranges);
+  SectionPlace(const motion::PathStretch& path, std::size_t section, std::vector<PieceRange> ranges);
   std::vector<RunPieces> runs(std::size_t of_section) const { return runs_of(pieces, ranges[of_section]); }
 };
 

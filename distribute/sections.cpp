@@ -14,6 +14,7 @@
 
 namespace camber::distribute {
 
+using namespace motion;
 using namespace simulate;
 
 using machine::Job;
@@ -99,7 +100,7 @@ void sweep_pieces(const Stock& raw, const Job& job, const PathStretch& path, con
                   double shrink_mm, double& removed_mm3, SectionWork& work, Stage& stage, const Use& use) {
   for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
     cancellation_point();
-    const PathPiece& piece = place.pieces[p];
+    const StretchPiece& piece = place.pieces[p];
     const removal::ToolRun& run = path.run_of(piece);
     if (shrink_mm > 0 && run.kind != removal::RunKind::milling) continue;
     Stock scratch(raw);
@@ -188,7 +189,7 @@ class SectionSolver {
   }
 
   SolvedPiece solve_piece(std::size_t p, const StockBefore& before, SectionWork& work) {
-    const PathPiece& piece = place_.pieces[p];
+    const StretchPiece& piece = place_.pieces[p];
     const Region reach = reach_of(job_, path_, piece);
     // What a cutter reads beside its reach is a tile away at most.
     const Region read = joined_region(job_, reach);
@@ -397,7 +398,7 @@ Solved solve_section(const Job& job, const SectionPrograms& programs, const Sect
     removal::SurfaceMap& map = *made.map;
     DeepestMarks marks(map);
     for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
-      const PathPiece& piece = place.pieces[p];
+      const StretchPiece& piece = place.pieces[p];
       mark_contour_of(job, of_target, piece, map);
       marks.add(map.take_marks());
       out.section.work.stamps += piece.count;
@@ -438,7 +439,7 @@ Prediction merge_sections(const Job& job, const Target& target, removal::Surface
   };
   const bool is_static = job.simulation.coupling == machine::Coupling::static_;
   if (!is_static) swept([&](const SweptSection& section) { join_stock(section.stock); });
-  const std::vector<PathPiece> pieces = path_pieces(program.path);
+  const std::vector<StretchPiece> pieces = path_pieces(program.path);
   std::size_t p = 0;
   solved([&](SolvedSection& section) {
     if (is_static) join_stock(section.stock);

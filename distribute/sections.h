@@ -14,16 +14,85 @@
 // 3. Merge: loads, marks and stock of all pieces become one prediction.
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "base/sparse_list.h"
 #include "distribute/section_parts.h"
 #include "distribute/section_pieces.h"
-#include "distribute/section_programs.h"
 #include "distribute/section_stock.h"
+#include "motion/path_stretch.h"
 #include "simulate/pieces.h"
 
 namespace camber::distribute {
+
+// The programs of a job in a process that works on one section: of a long program it has no text, and of the path what
+// lies near the section.
+
+struct SectionProgramsOptions {
+  /// A path of more stamps is not kept as a whole, if it is upright: it is timed again for the section that is asked
+  /// for.
+  std::size_t longest_path = 2'000'000;
+  /// Whether the machine can run the program; may throw InputError.
+  std::function<void(const simulate::SimulatedProgram&)> check{};
+};
+
+/// The stamps of a section's pieces on the programmed path.
+struct NominalSection {
+  removal::StampPath path{};  ///< all runs; stamps from `first` on; empty where `thin` has them
+  std::size_t first = 0;
+  const motion::SparsePath* thin = nullptr;
+  SectionPlace place;
+
+  motion::PathStretch stretch() const { return thin ? thin->stretch() : motion::PathStretch(path, first); }
+};
+
+class SectionPrograms {
+ public:
+  /// Reads and times the programs. Throws InputError.
+  SectionPrograms(const machine::Job& job, const SectionProgramsOptions& options,
+                  const simulate::SetupFindings& findings);
+
+  /// False: paths and texts are as a whole in memory, as `program` has them.
+  bool thin() const { return thin_.has_value(); }
+  const simulate::SimulatedProgram& program() const { return read_.program; }
+  /// Its path is that of `program`, or of another one.
+  const simulate::SimulatedProgram& of_target() const { return read_.of_target(); }
+  /// All that is read from here on is of this section, or lies near it. Where paths are thin, the programs are timed
+  /// once more, unless it was the last one.
+  void go_to(std::size_t section, std::size_t sections);
+
+  /// The programs as the machine runs them.
+  motion::PathStretch path() const;
+  motion::PathStretch target_path() const;
+  /// Outline of path(), where it is thin; else null.
+  const motion::PathOutline* outline() const { return thin_ ? &thin_->path.outline : nullptr; }
+  /// Where the pieces of any section lie on these two, or a little more.
+  removal::Region reach(std::size_t section, std::size_t sections) const;
+  NominalSection nominal(std::size_t section, std::size_t sections) const;
+  /// Names what make_target() cannot take from of_target().
+  void add_to(simulate::TargetWork& work) const;
+
+  /// For the merge by the same process; nothing where texts were given up. Ends the object.
+  std::optional<simulate::Programs> take();
+
+ private:
+  /// Paths of thin programs.
+  struct Thin {
+    motion::SparsePath path;
+    std::optional<motion::SparsePath> original;  ///< path of a target that is another program
+    motion::SparsePath nominal;                  ///< nominal path of the target
+    std::optional<std::size_t> section{};
+    std::size_t sections = 0;
+    const motion::SparsePath& target() const { return original ? *original : path; }
+  };
+  void time_all(std::size_t longest_path);
+
+  const machine::Job& job_;
+  simulate::Programs read_;
+  std::optional<Thin> thin_;
+};
 
 struct Swept {
   SweptSection section;
@@ -35,7 +104,7 @@ SweptSection sweep_section(const machine::Job& job, const SectionPrograms& progr
                            std::size_t sections, const std::function<void(const removal::StockPart&)>& own,
                            Diagnostics& diagnostics);
 /// The program's path alone, out of a stock.
-Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const simulate::PathStretch& path,
+Swept sweep_path_section(const machine::Job& job, const removal::Stock& blank, const motion::PathStretch& path,
                          const SectionPlace& place);
 
 /// Change of the stock that a piece must feel, or of the deflection with which the tool enters it, before it is solved
@@ -60,7 +129,7 @@ struct SolveOptions {
   std::size_t section = 0, sections = 1;
   std::optional<std::size_t> turn_from{};  ///< see PredictOptions
   std::function<void(double)> progress{};
-  const simulate::PathOutline* outline = nullptr;  ///< outline of a path that is not in memory as a whole
+  const motion::PathOutline* outline = nullptr;  ///< outline of a path that is not in memory as a whole
 };
 struct Solved {
   SolvedSection section;
@@ -72,7 +141,7 @@ Solved solve_section(const machine::Job& job, const SectionPrograms& programs, c
                      const SolveOptions& options, Diagnostics& diagnostics,
                      std::optional<simulate::Target>* kept = nullptr);
 /// The same against a whole target; no contour.
-Solved solve_path_section(const machine::Job& job, const simulate::Target& target, const simulate::PathStretch& path,
+Solved solve_path_section(const machine::Job& job, const simulate::Target& target, const motion::PathStretch& path,
                           const SectionPlace& place, const SectionParts& parts,
                           const std::function<void(double)>& progress);
 
@@ -80,7 +149,7 @@ Solved solve_path_section(const machine::Job& job, const simulate::Target& targe
 /// `programs` may be at another section.
 removal::Region section_region(const machine::Job& job, const SectionPrograms& programs, std::size_t section,
                                std::size_t sections);
-removal::Region section_region(const machine::Job& job, const simulate::PathStretch& path, const SectionPlace& place,
+removal::Region section_region(const machine::Job& job, const motion::PathStretch& path, const SectionPlace& place,
                                std::size_t section);
 
 /// Gives the parts of all sections one after the other, in order; each may be used up. Several times the same.

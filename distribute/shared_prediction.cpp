@@ -50,7 +50,7 @@ struct Division {
 Division division_of(const removal::Stock& blank, const removal::StampPath& path) {
   Division out{blank.voxel_mm(), blank.band_mm(), blank.min_mm(), blank.max_mm(), {}};
   for (const removal::ToolRun& run : path.runs) out.runs.push_back({run.tool, run.kind, 0});
-  for (const PathPiece& piece : path_pieces(path)) ++out.runs[piece.run].pieces;
+  for (const StretchPiece& piece : path_pieces(path)) ++out.runs[piece.run].pieces;
   return out;
 }
 

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "base/geometry.h"
-#include "dynamics/rational_fraction.h"
 
 namespace camber::dynamics {
 namespace {

@@ -1,4 +1,4 @@
-#include "dynamics/frequency_response.h"
+#include "dynamics/fit_modes.h"
 
 #include <algorithm>
 #include <array>

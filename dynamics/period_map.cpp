@@ -1,4 +1,4 @@
-#include "dynamics/period_map.h"
+#include "dynamics/semi_discretisation.h"
 
 #include <algorithm>
 #include <cmath>

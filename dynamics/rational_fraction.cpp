@@ -1,4 +1,4 @@
-#include "dynamics/rational_fraction.h"
+#include "dynamics/fit_modes.h"
 
 #include <algorithm>
 #include <array>

@@ -6,8 +6,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "dynamics/period_map.h"
-
 namespace camber::dynamics {
 namespace {
 

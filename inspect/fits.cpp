@@ -8,8 +8,6 @@
 #include <functional>
 #include <limits>
 
-#include "inspect/minimax.h"
-
 namespace camber::inspect {
 namespace {
 

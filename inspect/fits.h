@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "base/geometry.h"
 #include "machine/features.h"
 
@@ -47,5 +49,25 @@ CircleFit fit_circle(std::span<const Vec2> points, FeatureFilter filter);
 
 /// The same of a cylinder near `axis` (a direction within about 10 degrees). Five points or more.
 CylinderFit fit_cylinder(std::span<const Vec3> points, const Vec3& axis, FeatureFilter filter);
+
+// Small linear programs: few unknowns, many inequalities.
+
+/// row . x <= bound.
+struct Inequality {
+  Eigen::VectorXd row;
+  double bound = 0;
+};
+
+struct LinearOptimum {
+  Eigen::VectorXd x;
+  std::vector<std::size_t> active;  ///< inequalities that determine x, of those given
+  bool optimal = false;             ///< false: no x fulfils all of them, or too many steps
+};
+
+/// Minimizes cost . x subject to the inequalities and |x_j| <= box_j, by the dual simplex method: starts at a corner of
+/// the box, exchanges the most violated inequality for an active one, and ends where none is violated. box_j > 0.
+/// Source: Chvatal, Linear Programming (1983), ch. 10. Exact to rounding (1e-12 of the numbers); for tens of unknowns.
+LinearOptimum minimize(const Eigen::VectorXd& cost, const std::vector<Inequality>& inequalities,
+                       const Eigen::VectorXd& box);
 
 }  // namespace camber::inspect

@@ -1,4 +1,4 @@
-#include "inspect/minimax.h"
+#include "inspect/fits.h"
 
 #include <Eigen/LU>
 #include <algorithm>

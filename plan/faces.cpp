@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "plan/find_holes.h"
 #include "plan/triangle_solid.h"
 
 namespace camber::plan {

@@ -68,4 +68,20 @@ std::vector<AxisPlane> joined(std::vector<AxisPlane> planes, double tolerance_mm
 /// between them. Planes are ascending; longer walls come first, then larger faces.
 std::vector<AxisPlane> without_slivers(const std::vector<AxisPlane>& planes, double narrowest_mm);
 
+// Upright round holes of a mesh.
+
+struct FoundHoles {
+  std::vector<Hole> holes;
+  std::vector<bool> of_hole;     ///< whether each triangle belongs to a hole
+  std::vector<Triangle> caps;    ///< what closes the solid where the holes' triangles are taken away
+  std::vector<Vec3> new_points;  ///< middles of the caps, numbered after those of the solid
+};
+
+/// See find_faces.
+FoundHoles find_holes(const TriangleSolid& solid, const MeshEdges& edges, const FaceOptions& options);
+
+/// Normal of a triangle, of length 1; zero where it has no area.
+Vec3 unit_normal(const TriangleSolid& solid, std::size_t triangle);
+bool is_upright(const Vec3& unit_normal);
+
 }  // namespace camber::plan

@@ -1,4 +1,4 @@
-#include "plan/find_holes.h"
+#include "plan/faces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "plan/layered_solid.h"
+#include "plan/part_of_stock.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "plan/room.h"
-
 namespace camber::plan {
 
 std::string_view to_string(Feature feature) {

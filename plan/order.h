@@ -1,13 +1,83 @@
 #pragma once
 // The order in which primitives are machined, the faces that are open then, and the features that follow from them.
 #include <array>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "plan/primitives.h"
+#include "plan/removal_volume.h"
+#include "plan/triangle_solid.h"
 
 namespace camber::plan {
+
+// The removal volume in primitives: boxes and upright cylinders, by one of three ways to divide.
+
+/// After planes parallel to xy (the heights come first): by planes parallel to yz, parallel to zx, or by both, so that
+/// each box is as large as possible.
+enum class DivisionPlan : unsigned char { yz, zx, largest };
+inline constexpr std::array<DivisionPlan, 3> kDivisionPlans{DivisionPlan::yz, DivisionPlan::zx, DivisionPlan::largest};
+std::string_view to_string(DivisionPlan plan);
+
+struct VolumePrimitive {
+  bool is_hole = false;
+  bool free_form = false;        ///< one of its faces is
+  bool contoured = false;        ///< a part stays in it, with upright walls
+  bool overhang = false;         ///< a free-form face of it looks down
+  std::vector<CellIndex> cells;  ///< ascending; none of a hole; all of the box but of slivers that are joined
+  std::size_t hole = 0;          ///< among RemovalVolume::holes
+  Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();
+  double volume_mm3 = 0;  ///< to be removed
+  Vec3 middle() const { return 0.5 * (min_mm + max_mm); }
+};
+
+/// Each layer between two neighbouring planes parallel to xy is divided by itself, and in it each connected region by
+/// the planes that its own outline has: a pocket is not cut by planes of another one. A region with a free-form face is
+/// one primitive, with those above and below it that it touches. `largest` takes the greatest rectangle that is left
+/// again and again (equal: less perimeter, then less x, then less y of the middle), or one of the other ways where that
+/// gives fewer boxes. A plane parallel to xy does not divide what is alike above and below: it is the floor of another
+/// region. A box narrower than the smallest mill that lies along another one is joined to that, and a layer thinner
+/// than a tenth of it to the layer below where that is no larger: then a primitive has more than one box. Boxes first,
+/// by layer from below; then holes.
+std::vector<VolumePrimitive> divide(const RemovalVolume& removal, DivisionPlan plan);
+
+// Where a cutter has room among what stays.
+
+/// Upright, seen from above.
+struct Rect {
+  double x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+  double distance(double x, double y) const;
+  double distance(const Rect& other) const;
+  bool holds(double x, double y) const { return x >= x0 && x <= x1 && y >= y0 && y <= y1; }
+};
+
+/// A grid over a window, with the places where something stands.
+class Room {
+ public:
+  /// Obstacles are the places of `middles` and a radius round it where `stays` is higher than `above_mm`. Steps are a
+  /// twelfth of the radius where that makes 200 to 800 of them along the longer side.
+  Room(const TriangleSolid& stays, const Rect& middles, double radius_mm, double above_mm);
+
+  /// Area of the places that `wanted` names and where nothing stands, but which no cutter covers whose middle is within
+  /// `middles` and which touches no obstacle. Exact to about a step along the outlines.
+  double unreached_mm2(const std::function<bool(double, double)>& wanted) const;
+  /// Area of what stands where `wanted` says.
+  double standing_mm2(const std::function<bool(double, double)>& wanted) const;
+
+ private:
+  double x(int i) const { return low_.x() + (i + 0.5) * step_mm_; }
+  double y(int j) const { return low_.y() + (j + 0.5) * step_mm_; }
+  std::size_t at(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(ny_) + static_cast<std::size_t>(j);
+  }
+  void stand(const TriangleSolid& stays, const Triangle& t, double above_mm);
+
+  Rect middles_;
+  double radius_mm_, step_mm_;
+  Vec2 low_;
+  int nx_, ny_;
+  std::vector<char> stands_;
+};
 
 enum class Feature : unsigned char {
   closed_pocket,

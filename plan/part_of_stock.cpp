@@ -8,7 +8,6 @@
 #include <tbb/parallel_for.h>
 
 #include "copymill/outline.h"
-#include "plan/layered_solid.h"
 #include "plan/stock_solid.h"
 
 namespace camber::plan {

@@ -1,4 +1,4 @@
-#include "plan/plan_table.h"
+#include "plan/programs.h"
 
 #include <algorithm>
 #include <cmath>

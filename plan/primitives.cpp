@@ -1,4 +1,4 @@
-#include "plan/primitives.h"
+#include "plan/order.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,6 +10,8 @@
 #include "base/folders.h"
 #include "base/output_file.h"
 #include "base/units.h"
+#include "checks/collisions.h"
+#include "checks/flute_reach.h"
 #include "compensate/compensate.h"
 #include "copymill/copy_milling.h"
 #include "feedmodel/cycle_time.h"
@@ -19,8 +21,6 @@
 #include "machine/number_key.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
-#include "simulate/collisions.h"
-#include "simulate/flute_reach.h"
 #include "simulate/predict.h"
 
 namespace camber::plan {
@@ -191,9 +191,9 @@ copymill::CopyResult copy_what_fits(const PlanInput& input, const machine::Job& 
 void add_warnings(const machine::Job& job, const std::string& name, const std::string& text,
                   const removal::Stock& blank, Diagnostics& diagnostics) {
   Diagnostics found;
-  const simulate::SimulatedProgram emitted = simulate::simulate_motion(SourceText(name, text), job, {}, found);
-  simulate::check_collisions(job, emitted, blank, found);
-  simulate::check_flute_reach(job, emitted, blank, found);
+  const simulate::SimulatedProgram emitted = motion::simulate_motion(SourceText(name, text), job, {}, found);
+  checks::check_collisions(job, emitted, blank, found);
+  checks::check_flute_reach(job, emitted, blank, found);
   for (Diagnostic d : found.all()) {
     d.severity = Severity::warning;
     diagnostics.add(std::move(d));

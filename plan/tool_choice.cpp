@@ -1,4 +1,4 @@
-#include "plan/tool_choice.h"
+#include "plan/planned_operations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,8 +11,6 @@
 
 #include "base/stage.h"
 #include "base/units.h"
-#include "posture/clear_directions.h"
-#include "posture/one_direction.h"
 #include "posture/path_cost.h"
 #include "posture/rotary_path.h"
 
@@ -372,7 +370,7 @@ class BySurface {
     constexpr int kTurns = 40;
     double radius = 0, from = std::numeric_limits<double>::infinity();
     for (const ToolShape::Piece& piece : tool_.pieces)
-      if (piece.solid.part() != simulate::OutlineRing::Part::cutter) {
+      if (piece.solid.part() != checks::OutlineRing::Part::cutter) {
         radius = std::max(radius, piece.radius_mm + piece.need_mm);
         from = std::min(from, piece.bottom_mm);
       }

@@ -1,18 +1,99 @@
 #pragma once
 // Chooses the direction of the tool at every point of a path, at least cost and clear of everything.
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "kinematics/chain.h"
 #include "machine/machine.h"
-#include "posture/directions.h"
-#include "posture/lag_error.h"
 #include "posture/path_points.h"
 #include "posture/surroundings.h"
 
 namespace camber::posture {
+
+// Directions of the tool that a machine reaches within travel, and the rotary motion and time from one to the next.
+
+class Directions {
+ public:
+  struct Step {
+    std::uint16_t to = 0;
+    float turn_deg = 0;  ///< sum of the turns of the rotary axes
+    float time_s = 0;    ///< time of the slowest axis, at its speed or from rest to rest with its acceleration
+    std::uint8_t from_branch = 0, to_branch = 0;  ///< solutions, as in angles()
+  };
+
+  /// Directions about `step_rad` apart, up to `max_tilt_rad` from +Z, that the rotary axes of the machine reach within
+  /// their travel; neighbours up to one and a half steps away. Requires machine.kinematics.given().
+  Directions(const machine::Machine& machine, double step_rad, double max_tilt_rad);
+
+  std::size_t size() const { return axes_.size(); }
+  const Vec3& axis(std::size_t i) const { return axes_[i]; }
+  /// Returns one or two solutions for A, B and C, rad.
+  std::span<const Vec3> angles(std::size_t i) const { return {angles_[i].rad.data(), angles_[i].count}; }
+  /// Every solution of the inverse kinematics is within travel.
+  bool whole(std::size_t i) const { return angles_[i].whole; }
+  /// Returns the steps from direction i, the one to itself included.
+  std::span<const Step> steps(std::size_t i) const { return {steps_.data() + first_[i], first_[i + 1] - first_[i]}; }
+
+ private:
+  struct Angles {
+    std::array<Vec3, 2> rad;
+    std::size_t count = 0;
+    bool whole = false;
+  };
+  Step step_between(std::size_t a, std::size_t b) const;
+
+  const machine::Machine& machine_;
+  std::vector<Vec3> axes_;
+  std::vector<Angles> angles_;
+  std::vector<Step> steps_;
+  std::vector<std::size_t> first_;
+};
+
+// Lag error: the error that the following errors of the axes leave on the surface. Each axis is behind its command by
+// its own time.
+//
+// An axis i at the speed q'_i is behind by  tau_i q'_i,  tau = filter / 2 + T1 + T2 + (1 - Kf) / Kp  (feedmodel/drive.h
+// at constant speed). The centre of the cutter's rounding, c(q) in the part's frame, is off by  J (tau o q'),  J =
+// dc/dq, and the surface by the component along the normal:
+//     e = n . J (tau o q')
+// which is 0 where all axes are behind by the same time, as the centre goes along the surface.
+
+class LagError {
+ public:
+  /// For a tool of this length (gauge line to tip), whose cutter is rounded about a point `pivot_mm` above the tip;
+  /// `origin_mm`: machine zero in the frame of the points.
+  LagError(const machine::Machine& machine, const Vec3& origin_mm, double tool_length_mm, double pivot_mm);
+
+  /// False: the axes follow their commands, all with the same delay.
+  bool any() const { return any_; }
+
+  /// The machine with the tool at a point.
+  struct Place {
+    kinematics::Joints joints;
+    Vec3 linear = Vec3::Zero(), rotary = Vec3::Zero();  ///< (J^T n)_i tau_i; s, mm s / rad
+  };
+  Place place(const PathPoint& point, const Vec3& axis, const Vec3& rotary_rad) const;
+
+  /// mm, on the way between two places in this time; angles by the shorter way. Greater than zero: into the part.
+  static double error_mm(const Place& from, const Place& to, double time_s);
+
+  /// Errors along the path, at a constant direction and with the axes where `rotary_rad` has them: a value for each
+  /// point, 0 off the part.
+  std::vector<double> along(std::span<const PathPoint> points, const Vec3& axis, const Vec3& rotary_rad) const;
+
+ private:
+  Vec3 centre_mm(const kinematics::Joints& joints) const;
+
+  kinematics::Chain chain_;
+  Vec3 origin_mm_;
+  double tool_length_mm_, pivot_mm_;
+  Vec3 linear_tau_s_, rotary_tau_s_;
+  bool any_ = false;
+};
 
 enum class Mode : std::uint8_t {
   chosen,     ///< least cost along the path: form error, rotary motion, time
@@ -66,5 +147,32 @@ std::vector<Postures> choose_postures(std::span<const PathPoint> points, const S
 std::vector<std::size_t> unclear_points(std::span<const PathPoint> points, std::span<const Vec3> axes,
                                         std::span<const Vec3> rotary_rad, const Surroundings& surroundings,
                                         const ToolShape& tool, const machine::Machine& machine);
+
+// Finds which directions are clear at which points, for a tool at several lengths at once.
+
+class ClearDirections {
+ public:
+  static constexpr std::size_t kMaxTools = 32;
+
+  /// `tools`: the same one drawn in further and further, at most kMaxTools. Directions more than `farthest_rad` from
+  /// the normal of a contact are not looked at, and are not clear.
+  ClearDirections(std::span<const PathPoint> points, const Surroundings& surroundings, std::span<const ToolShape> tools,
+                  const Directions& directions, double farthest_rad);
+
+  bool clear(std::size_t point, std::size_t direction, std::size_t tool) const {
+    return (clear_[point * directions_ + direction] >> tool & 1U) != 0;
+  }
+
+ private:
+  std::size_t directions_;
+  std::vector<std::uint32_t> clear_;  ///< point by point: a bit for each tool
+};
+
+// Chooses one direction of the tool for a whole operation (3+2 axes).
+
+/// Returns, of the directions that the machine reaches, the one of least cost that is clear at every point and half way
+/// between two. `blocked` where there is none: the point at which the direction that gets farthest is not clear.
+Postures one_direction(std::span<const PathPoint> points, const Surroundings& surroundings, const ToolShape& tool,
+                       const machine::Machine& machine, const LagError& lag, const PostureOptions& options);
 
 }  // namespace camber::posture

@@ -1,4 +1,4 @@
-#include "posture/clear_directions.h"
+#include "posture/choose.h"
 
 #include <algorithm>
 #include <cassert>
@@ -8,7 +8,6 @@
 #include <tbb/parallel_for.h>
 
 #include "base/stage.h"
-#include "posture/choose.h"
 
 namespace camber::posture {
 namespace {
@@ -17,10 +16,10 @@ constexpr double kAirCap_mm = 10;  ///< room beyond this is not measured
 
 /// Holds both pieces, and what is between them.
 ToolShape::Piece hull_of(const ToolShape::Piece& longer, const ToolShape::Piece& shorter) {
-  std::vector<simulate::TurnedSolid::Circle> circles = shorter.solid.circles();
+  std::vector<checks::TurnedSolid::Circle> circles = shorter.solid.circles();
   circles.insert(circles.end(), longer.solid.circles().begin(), longer.solid.circles().end());
-  std::ranges::stable_sort(circles, {}, &simulate::TurnedSolid::Circle::height_mm);
-  simulate::TurnedSolid solid(longer.solid.part());
+  std::ranges::stable_sort(circles, {}, &checks::TurnedSolid::Circle::height_mm);
+  checks::TurnedSolid solid(longer.solid.part());
   for (const auto& circle : circles) solid.add(circle.radius_mm, circle.height_mm);
   return {solid, longer.need_mm, solid.radius_mm(), solid.bottom_mm(), solid.top_mm()};
 }
@@ -32,7 +31,7 @@ std::optional<ToolShape::Piece> core_of(const ToolShape::Piece& longer, const To
   for (const auto* piece : {&longer, &shorter})
     for (const auto& circle : piece->solid.circles()) radius = std::min(radius, circle.radius_mm);
   if (top <= bottom || radius <= 0) return std::nullopt;
-  simulate::TurnedSolid solid(longer.solid.part());
+  checks::TurnedSolid solid(longer.solid.part());
   solid.add(radius, bottom);
   solid.add(radius, top);
   return ToolShape::Piece{solid, longer.need_mm, radius, bottom, top};

@@ -1,4 +1,4 @@
-#include "posture/directions.h"
+#include "posture/choose.h"
 
 #include <algorithm>
 #include <cmath>

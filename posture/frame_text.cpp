@@ -1,4 +1,4 @@
-#include "posture/frame_text.h"
+#include "posture/posture.h"
 
 #include <cmath>
 

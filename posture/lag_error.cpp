@@ -1,4 +1,4 @@
-#include "posture/lag_error.h"
+#include "posture/choose.h"
 
 #include <algorithm>
 #include <cmath>

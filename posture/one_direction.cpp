@@ -1,4 +1,4 @@
-#include "posture/one_direction.h"
+#include "posture/choose.h"
 
 #include <algorithm>
 #include <numeric>

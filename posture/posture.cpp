@@ -13,10 +13,8 @@
 #include "deflection/edge_force.h"
 #include "kinematics/control_options.h"
 #include "nc/emit/number_style.h"
-#include "posture/frame_text.h"
 #include "posture/path_cost.h"
 #include "posture/rotary_path.h"
-#include "posture/stock_obstacle.h"
 #include "repath/post_writer.h"
 #include "repath/tip_motion.h"
 

@@ -22,17 +22,22 @@
 //
 // Frames: points and directions are in the frame of the program's X Y Z with all rotary axes at 0; tool shapes are in
 // the tool's frame, origin at the tip. docs/posture.md has the cost, the checks and the figures.
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "kinematics/chain.h"
 #include "machine/job_file.h"
+#include "nc/emit/number_style.h"
 #include "nc/five_axis_words.h"
 #include "nc/move.h"
 #include "nc/program.h"
 #include "posture/choose.h"
+#include "posture/surroundings.h"
+#include "repath/post.h"
 
 namespace camber::posture {
 
@@ -91,5 +96,27 @@ std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& 
 
 /// The least overhang that is tried: flutes, and one diameter.
 double least_overhang_mm(const machine::Tool& tool);
+
+// Writes the frame of an operation at one direction of the tool: G68.2, G254 or joints.
+
+struct WrittenFrame {
+  repath::PostFrame frame;
+  Vec3 axis = Vec3::UnitZ();  ///< axis that follows from the words as they are written
+};
+
+/// G68.2 and G53.1, or G254 (tilted, dynamic), for this direction, the rotary axes back at 0 behind it.
+WrittenFrame frame_text(const kinematics::Chain& chain, nc::OneDirection written, const Vec3& axis, int decimals,
+                        const nc::NumberStyle& style);
+
+// Makes the stock an obstacle, as the tool that is to be tilted finds it.
+
+/// Adds the job's stock as it stands before the move `first`: without what the moves before it cut, and with its
+/// allowance cut by the whole program. A box, a cylinder and a mesh of which nothing is cut are added as they are (the
+/// cylinder as the prism of 48 faces about it); everything else as the faces of voxels, which stand out of the stock by
+/// up to 0.7 kStockCell_mm and nowhere back from it (parts of more than about 0.3 m: wider faces). Without [stock]:
+/// nothing. Throws InputError: what simulate_motion() and the readers of the stock say.
+inline constexpr double kStockCell_mm = 0.5;
+void add_stock(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves, std::size_t first,
+               Surroundings& out, Diagnostics& diagnostics);
 
 }  // namespace camber::posture

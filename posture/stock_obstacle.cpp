@@ -1,4 +1,4 @@
-#include "posture/stock_obstacle.h"
+#include "posture/posture.h"
 
 #include <algorithm>
 #include <array>
@@ -75,7 +75,7 @@ bool cuts_before(const nc::Interpretation& moves, std::size_t first) {
 
 void add_cut_stock(machine::Job job, const nc::Program& program, std::uint32_t first, Surroundings& out,
                    Diagnostics& diagnostics) {
-  const simulate::SimulatedProgram simulated = simulate::simulate_motion(program.source, job, {}, diagnostics);
+  const simulate::SimulatedProgram simulated = motion::simulate_motion(program.source, job, {}, diagnostics);
   diagnostics.throw_if_errors();
   if (job.stock.vdb.empty()) {
     double voxel = kFieldVoxel_mm;

@@ -10,8 +10,8 @@
 #include "base/convex_distance.h"
 #include "base/tool_pose.h"
 #include "base/triangle_mesh.h"
-#include "simulate/tool_outline.h"
-#include "simulate/tool_surface.h"
+#include "checks/tool_outline.h"
+#include "checks/tool_surface.h"
 
 namespace camber::posture {
 namespace {
@@ -65,7 +65,7 @@ void add_spindle(const machine::Body& body, const Vec3& gauge_mm, const Vec3& ax
     bottom = std::min(bottom, gauge_height_mm + q.dot(axis));
     top = std::max(top, gauge_height_mm + q.dot(axis));
   }
-  simulate::TurnedSolid solid(simulate::OutlineRing::Part::holder);
+  checks::TurnedSolid solid(checks::OutlineRing::Part::holder);
   solid.add(radius, bottom);
   solid.add(radius, top);
   out.add(std::move(solid), clearance_mm);
@@ -73,23 +73,23 @@ void add_spindle(const machine::Body& body, const Vec3& gauge_mm, const Vec3& ax
 
 }  // namespace
 
-void ToolShape::add(simulate::TurnedSolid solid, double need_mm) {
+void ToolShape::add(checks::TurnedSolid solid, double need_mm) {
   Piece piece{solid, need_mm, solid.radius_mm(), solid.bottom_mm(), solid.top_mm()};
   pieces.push_back(std::move(piece));
 }
 
 ToolShape tool_shape(const machine::Tool& tool, const machine::Machine& machine, double clearance_mm) {
-  using Part = simulate::OutlineRing::Part;
+  using Part = checks::OutlineRing::Part;
   ToolShape out;
   out.pivot_mm = tool.type == machine::ToolType::ball ? tool.diameter_mm / 2 : tool.corner_radius_mm;
-  const double end = simulate::cutter_end_mm(tool);
+  const double end = checks::cutter_end_mm(tool);
   if (end > out.pivot_mm + kCutterSlack_mm) {
-    simulate::TurnedSolid flutes(Part::cutter);
+    checks::TurnedSolid flutes(Part::cutter);
     flutes.add(tool.diameter_mm / 2 - kCutterSlack_mm, out.pivot_mm);
     flutes.add(tool.diameter_mm / 2 - kCutterSlack_mm, end);
     out.add(std::move(flutes), kTouch_mm);
   }
-  for (simulate::TurnedSolid& solid : simulate::solids_of(tool))
+  for (checks::TurnedSolid& solid : checks::solids_of(tool))
     if (solid.part() != Part::cutter) out.add(std::move(solid), clearance_mm);
   double gauge_height = tool.overhang_mm;
   for (const machine::HolderPart& part : tool.holder) gauge_height += part.length_mm;
@@ -193,7 +193,7 @@ struct Surroundings::Probe {
   double room_mm;  ///< never negative
 
   bool counts(const ToolShape::Piece& piece) const {
-    return !stock || piece.solid.part() != simulate::OutlineRing::Part::cutter;
+    return !stock || piece.solid.part() != checks::OutlineRing::Part::cutter;
   }
 
   /// A volume as the tool sees it.
@@ -262,7 +262,7 @@ double Surroundings::Tree::room_mm(const ToolShape& tool, const Vec3& tip_mm, co
         if (bound >= probe.room_mm) continue;
         probe.room_mm = std::max(bound, 0.0);
         if (bound >= 0) continue;
-        if (!frame) frame = simulate::outline_frame({tip_mm, axis, 0});
+        if (!frame) frame = checks::outline_frame({tip_mm, axis, 0});
         if (too_near(piece, in_tool(triangles[i], *frame, tip_mm))) return -1;
       }
     }

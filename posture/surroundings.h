@@ -7,9 +7,9 @@
 
 #include "base/geometry.h"
 #include "base/triangle_mesh.h"
+#include "checks/machine_solids.h"
 #include "machine/machine.h"
 #include "machine/tool.h"
-#include "simulate/machine_solids.h"
 
 namespace camber::posture {
 
@@ -17,7 +17,7 @@ namespace camber::posture {
 /// axis.
 struct ToolShape {
   struct Piece {
-    simulate::TurnedSolid solid;
+    checks::TurnedSolid solid;
     double need_mm = 0;                               ///< least distance to the surroundings
     double radius_mm = 0, bottom_mm = 0, top_mm = 0;  ///< cylinder about the piece
   };
@@ -25,7 +25,7 @@ struct ToolShape {
   double pivot_mm = 0;  ///< height above the tip about which the tool is tilted
   double error_mm = 0;  ///< deflection of the tip by an ordinary force; 0: axis errors do not count (choose.h)
 
-  void add(simulate::TurnedSolid solid, double need_mm);
+  void add(checks::TurnedSolid solid, double need_mm);
 };
 
 /// Neck, shank, holder and the bodies on the spindle (their cylinder about the axis) with `clearance_mm`, and the

@@ -31,7 +31,7 @@ pybind11::array vectors(const pybind11::object& owner, const std::vector<Row>& r
 
 /// The rows of a result as an object with an attribute for each column.
 template <class Row>
-struct Table {
+struct ColumnTable {
   pybind11::object owner;  ///< the Python object of the result
   const std::vector<Row>* rows = nullptr;
 };
@@ -40,23 +40,23 @@ template <class Row>
 class TableClass {
  public:
   TableClass(pybind11::module_& module, const char* name) : class_(module, name) {
-    class_.def("__len__", [](const Table<Row>& t) { return t.rows->size(); });
+    class_.def("__len__", [](const ColumnTable<Row>& t) { return t.rows->size(); });
     class_.def_property_readonly_static("columns", [names = names_](const pybind11::object&) { return *names; });
   }
   /// (n, 3): three fields that stand behind each other in a row, "x_mm", "y_mm", "z_mm".
   TableClass& add_vectors(const char* name, double Row::*first) {
-    class_.def_property_readonly(name, [first](const Table<Row>& t) { return vectors(t.owner, *t.rows, first); });
+    class_.def_property_readonly(name, [first](const ColumnTable<Row>& t) { return vectors(t.owner, *t.rows, first); });
     return *this;
   }
   template <class Field>
   TableClass& add(const char* name, Field Row::*field) {
     names_->emplace_back(name);
-    class_.def_property_readonly(name, [field](const Table<Row>& t) { return column(t.owner, *t.rows, field); });
+    class_.def_property_readonly(name, [field](const ColumnTable<Row>& t) { return column(t.owner, *t.rows, field); });
     return *this;
   }
 
  private:
-  pybind11::class_<Table<Row>> class_;
+  pybind11::class_<ColumnTable<Row>> class_;
   std::shared_ptr<std::vector<std::string>> names_ = std::make_shared<std::vector<std::string>>();
 };
 

@@ -26,7 +26,7 @@ py::class_<Result> result_class(py::module_& module, const char* name) {
 template <class Result, class Row>
 void add_table(py::class_<Result>& of, const char* name, std::vector<Row> Result::*rows) {
   of.def_property_readonly(name, [rows](const py::object& self) {
-    return Table<Row>{self, &(self.cast<const Result&>().*rows)};
+    return ColumnTable<Row>{self, &(self.cast<const Result&>().*rows)};
   });
 }
 

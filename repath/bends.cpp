@@ -1,4 +1,4 @@
-#include "repath/bends.h"
+#include "repath/chain_window.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ std::optional<Bent> Bends::behind(const Bent& before, const std::optional<Primit
 }
 
 Bends::Section Bends::stretch(std::uint32_t first, std::uint32_t last) const {
-  const Tried& tried = fitter_.tried(first, last);
+  const TriedPrimitives& tried = fitter_.tried(first, last);
   Section out{first, last, tried.line, std::nullopt, std::nullopt};
   if (!tried.arc) return out;
   out.arc = tried.arc;

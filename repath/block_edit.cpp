@@ -1,4 +1,4 @@
-#include "repath/block_edit.h"
+#include "repath/post_writer.h"
 
 #include <algorithm>
 #include <cctype>

@@ -96,7 +96,7 @@ class Compressor {
     std::string mode_behind;
   };
 
-  FitOptions fit_options(const Run& run) const {
+  FitOptions fit_options(const BlockRun& run) const {
     FitOptions out = options_.fit;
     out.tolerance_mm = options_.tolerance_mm;
     out.increment_mm =
@@ -116,7 +116,7 @@ class Compressor {
   }
 
   void write(const RunChain& runs, Rewrite& rewrite, bool says_mode) const {
-    const Run& run = rewrite.part->run;
+    const BlockRun& run = rewrite.part->run;
     RunLines lines = text_of(program_, moves_, run, runs.path, rewrite.primitives, style_, says_mode);
     rewrite.text = {moves_.moves[run.first_move].block, moves_.moves[run.last_move].block, std::move(lines.lines)};
     rewrite.line_of = std::move(lines.line_of);
@@ -214,7 +214,7 @@ class Compressor {
 
 Compression compress(const nc::Program& program, const nc::Interpretation& moves, const CompressOptions& options) {
   Compressor compressor(program, moves, options);
-  const std::vector<Run> runs = runs_to_compress(program, moves, options.switch_planes && options.fit.arcs);
+  const std::vector<BlockRun> runs = runs_to_compress(program, moves, options.switch_planes && options.fit.arcs);
   for_each_chain(moves, runs, [&](const RunChain& chain) {
     compressor.rewrite(chain);
     if (options.progress && !chain.parts.empty())

@@ -33,7 +33,7 @@ struct CompressOptions {
 };
 
 /// A stretch of blocks that are plain straight cuts at one feed, in one plane or in space.
-struct Run {
+struct BlockRun {
   std::uint32_t first_move = 0, last_move = 0;  ///< indexes into Interpretation::moves, both included
   int normal = 2;                               ///< the axis that stands still: 0 X, 1 Y, 2 Z
   bool current_plane = true;                    ///< the plane is the one that the program has chosen
@@ -50,13 +50,13 @@ enum class RunKind { in_plane, in_space, with_arcs };
 /// scaled frames and moves that the text does not say one by one end a run. In a program with macros or subprograms
 /// blocks with a number are left alone: they may be jumped to. With arcs G2, G3, I, J, K and R may stand in a block
 /// too.
-std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind);
+std::vector<BlockRun> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind);
 
 /// What kept a program as it was, in one sentence without a stop: how many runs there are, and what ends them.
 std::string why_unchanged(const nc::Program& program, const nc::Interpretation& moves, RunKind kind);
 
 /// Runs in space; with `apart` those in a plane other than the chosen one, if long enough for an arc, on their own.
-std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart);
+std::vector<BlockRun> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart);
 
 /// Points of runs as the text says them, in the plane: start and ends of their moves. Repeated points are left out;
 /// `block` tells which block ends at each (of the first point: the first block).
@@ -69,7 +69,7 @@ struct RunPath {
 /// over whose joints nothing runs.
 struct RunChain {
   struct Part {
-    Run run;
+    BlockRun run;
     std::uint32_t first_point = 0, last_point = 0;
   };
   RunPath path;
@@ -80,7 +80,7 @@ struct RunChain {
   bool arc_before = false, arc_behind = false;
 };
 /// One after the other; the path of one is in memory at a time.
-void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,
+void for_each_chain(const nc::Interpretation& moves, std::span<const BlockRun> runs,
                     const std::function<void(const RunChain&)>& take);
 
 struct RewrittenRun {

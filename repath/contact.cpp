@@ -1,4 +1,4 @@
-#include "repath/contact.h"
+#include "repath/drop_cutter.h"
 
 #include <algorithm>
 #include <cassert>

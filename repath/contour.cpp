@@ -1,4 +1,4 @@
-#include "repath/contour.h"
+#include "repath/fastest.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,6 @@
 #include "repath/chain_window.h"
 #include "repath/joints.h"
 #include "repath/shorten_lines.h"
-#include "repath/smooth_joints.h"
-#include "repath/spare_lines.h"
 #include "repath/tangent.h"
 
 namespace camber::repath {
@@ -172,7 +170,7 @@ std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& 
   const Fitter fitter(path, options);
   assert(!(options.max_kink_rad < kPi));
   const std::vector<bool> corners = corners_of(path, options), ends = ends_of(path, corners);
-  const Joints joints(path, options, corners);
+  const PieceJoints joints(path, options, corners);
   const Bends bends(path, options, fitter, joints);
   constexpr double kFar = 1e12;
   std::vector<ChainCost> cost(n, ChainCost{n, kFar, options.primitives_per_line_mm});

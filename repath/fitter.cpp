@@ -245,12 +245,12 @@ void FitMemory::forget() {
   kept_.clear();
 }
 
-const Tried& Fitter::tried(std::uint32_t first, std::uint32_t last) const {
+const TriedPrimitives& Fitter::tried(std::uint32_t first, std::uint32_t last) const {
   return (memory_ != nullptr ? *memory_ : own_memory_).at(first, last, [&] { return try_out(first, last); });
 }
 
-Tried Fitter::try_out(std::uint32_t first, std::uint32_t last) const {
-  Tried out;
+TriedPrimitives Fitter::try_out(std::uint32_t first, std::uint32_t last) const {
+  TriedPrimitives out;
   out.line = line(first, last);
   if (!options_.arcs || (out.line && out.line->deviation_mm <= options_.increment_mm)) return out;
   if (points_[first] == points_[last]) {

@@ -62,7 +62,7 @@ double chord_angle_rad(std::span<const Vec2> points, const Primitive& p) {
   return std::atan2(chord.y(), chord.x());
 }
 
-Joints::Joints(const Polyline& path, const FitOptions& options, const std::vector<bool>& corners)
+PieceJoints::PieceJoints(const Polyline& path, const FitOptions& options, const std::vector<bool>& corners)
     : path_(path),
       corners_(corners),
       max_kink_rad_(options.max_kink_rad),
@@ -75,7 +75,7 @@ Joints::Joints(const Polyline& path, const FitOptions& options, const std::vecto
   edges_ = edges_of(path, options);
 }
 
-double Joints::max_kink_rad(const Primitive& before, const Primitive& p) const {
+double PieceJoints::max_kink_rad(const Primitive& before, const Primitive& p) const {
   const std::uint32_t at = p.first;
   if (!bounded_ || at == 0 || at + 1 == corners_.size() || corners_[at] ||
       std::min(turn_[at], blocks_turn_[at]) > kAlwaysSharpRad || (is_block(before) && is_block(p)))
@@ -95,7 +95,7 @@ double Joints::max_kink_rad(const Primitive& before, const Primitive& p) const {
   return std::max(max_kink_rad_, fraction * std::min(turn_[at], blocks_turn_[at]));
 }
 
-double Joints::chord_angle_rad(const Primitive& p) const {
+double PieceJoints::chord_angle_rad(const Primitive& p) const {
   if (path_.points[p.first] == path_.points[p.last]) return repath::chord_angle_rad(path_.points, p);
   constexpr std::uint32_t kSlots = 1024;
   if (angles_.empty()) angles_.resize(kSlots);
@@ -105,12 +105,12 @@ double Joints::chord_angle_rad(const Primitive& p) const {
 }
 
 /// What rounding of the centre may change of the direction at an end.
-double Joints::rounding_rad(const Primitive& p) const {
+double PieceJoints::rounding_rad(const Primitive& p) const {
   return p.arc ? 0.5 * increment_mm_ / p.center_from_start_mm.norm() : 0;
 }
 
-std::optional<Sweeps> Joints::behind(const Primitive& before, const Sweeps& of_before, const Primitive& p,
-                                     const Sweeps& of_p) const {
+std::optional<Sweeps> PieceJoints::behind(const Primitive& before, const Sweeps& of_before, const Primitive& p,
+                                          const Sweeps& of_p) const {
   const double most = max_kink_rad(before, p);
   if (most == kInfinity) return of_p;
   const double climb = slope_rad(path_, p) - slope_rad(path_, before);
@@ -133,25 +133,25 @@ std::optional<Sweeps> Joints::behind(const Primitive& before, const Sweeps& of_b
   return out;
 }
 
-double Joints::sweep_towards(const Primitive& p, const Sweeps& of_p, const Primitive& behind) const {
+double PieceJoints::sweep_towards(const Primitive& p, const Sweeps& of_p, const Primitive& behind) const {
   const double begin = chord_angle_rad(behind) - 0.5 * behind.sweep_rad;
   const double middle = 0.25 * (of_p.low_rad + of_p.high_rad);
   const double half = middle + wrapped(begin - chord_angle_rad(p) - middle);
   return std::clamp(2 * half, of_p.low_rad, of_p.high_rad);
 }
 
-bool Joints::keep(const Primitive& before, const Primitive& p) const {
+bool PieceJoints::keep(const Primitive& before, const Primitive& p) const {
   const double most = max_kink_rad(before, p);
   return most == kInfinity || kinks_of(path_, std::array{before, p}).front() <= most + kRoundingRad;
 }
 
-bool Joints::keep(std::span<const Primitive> chain) const {
+bool PieceJoints::keep(std::span<const Primitive> chain) const {
   for (std::size_t k = 0; k + 1 < chain.size(); ++k)
     if (!keep(chain[k], chain[k + 1])) return false;
   return true;
 }
 
-void give_way(const Joints& joints, std::vector<Primitive>& chain) {
+void give_way(const PieceJoints& joints, std::vector<Primitive>& chain) {
   if (!joints.bounded()) return;
   for (bool kept = false; !kept;) {
     std::vector<bool> gives(chain.size(), false);

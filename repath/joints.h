@@ -18,10 +18,10 @@ struct Sweeps {
 inline bool is_block(const Primitive& p) { return !p.arc && p.last == p.first + 1; }
 
 /// The rule of FitOptions::max_kink_rad at the joints of one path.
-class Joints {
+class PieceJoints {
  public:
   /// `corners`: as corners_of says. Both must outlive this.
-  Joints(const Polyline& path, const FitOptions& options, const std::vector<bool>& corners);
+  PieceJoints(const Polyline& path, const FitOptions& options, const std::vector<bool>& corners);
 
   /// Whether any joint is bounded at all.
   bool bounded() const { return bounded_; }
@@ -82,6 +82,6 @@ struct Kink {
 std::vector<Kink> kinks_beside_arcs(const Polyline& path, const FitOptions& options, std::span<const Primitive> chain);
 
 /// Where joints of a chain kink too much, as after rounding, arcs give way to the blocks as they were, until none does.
-void give_way(const Joints& joints, std::vector<Primitive>& chain);
+void give_way(const PieceJoints& joints, std::vector<Primitive>& chain);
 
 }  // namespace camber::repath

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "repath/corners.h"
-#include "repath/smooth_curve.h"
+#include "repath/resegment.h"
 #include "repath/smoothed_path.h"
 
 namespace camber::repath {

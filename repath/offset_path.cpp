@@ -1,4 +1,4 @@
-#include "repath/offset_path.h"
+#include "repath/raster.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "repath/post_deviation.h"
+#include "repath/path_deviation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "repath/primitive.h"
+#include "repath/fit.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,42 @@
 #pragma once
 // A finishing raster on the offset surface of a part: rows to and fro, and what links them.
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "repath/offset_path.h"
+#include "machine/tool.h"
+#include "nc/dialect.h"
+#include "repath/drop_cutter.h"
 #include "repath/scallop.h"
 
 namespace camber::repath {
+
+// Tip path over a part along a straight line, with points dense enough to bound the error between them.
+
+/// How close the points lie.
+struct OffsetPathOptions {
+  double chord_mm = 0.001;      ///< largest distance between the path and its chords
+  double increment_mm = 0.001;  ///< points nearer than half of this, seen from above, are not parted
+  double step_mm = 0;           ///< > 0: points at this distance seen from above, whatever the chords do
+};
+
+struct OffsetPoint {
+  Vec3 tip = Vec3::Zero();
+  DropContact contact{};
+};
+
+/// The longest chord for which a cutter with this rounding, on its way between two places at which it is free, meets
+/// nothing by more than chord_mm: l^2 = 8 r chord (a point outside both spheres of radius r is outside the sphere
+/// between them but for the sagitta). Flat: the radius stands for r, which holds for what lies beside the cutter; what
+/// it meets from above shows at the points.
+double longest_chord_mm(const Underside& cutter, double chord_mm);
+
+/// From `from` to `to`, both included. Chords are halved while they are longer than longest_chord_mm() or the path
+/// halfway is farther from them than chord_mm; at walls until they stand upright. Empty where at a point nothing lies
+/// under the cutter.
+std::vector<OffsetPoint> offset_path(const DropCutter& part, const Vec2& from, const Vec2& to,
+                                     const OffsetPathOptions& options);
 
 struct RasterOptions {
   Rectangle boundary;        ///< in X and Y; where the cutter touches
@@ -44,5 +75,22 @@ std::vector<Vec3> points_of(const DropCutter& part, const std::vector<Leg>& chai
 
 /// What points_of() and its rounding leave of the tolerance to those who lay the path out again.
 double tolerance_left_mm(const RasterOptions& options);
+
+// A raster as an NC program.
+
+struct RasterProgram {
+  nc::Dialect dialect = nc::default_dialect();
+  machine::Tool tool{};
+  double spindle_rpm = 0, feed_mm_per_min = 0;
+  double clearance_mm = 0;     ///< Z of moves from chain to chain
+  double lead_in_mm = 0;       ///< feed begins so far above a chain's first point ...
+  double lead_in_from_mm = 0;  ///< ... or at this Z, whichever is higher; never above the clearance plane
+  int decimals = 3;
+};
+
+/// The whole program: header, tool change, length offset, spindle; each chain (of two points at least) led in straight
+/// down at a third of the feed and left straight up in rapid; M30. It has an O number if the
+/// dialect has program numbers.
+std::string raster_text(const RasterProgram& program, std::span<const std::vector<Vec3>> chains);
 
 }  // namespace camber::repath

@@ -1,4 +1,4 @@
-#include "repath/raster_text.h"
+#include "repath/raster.h"
 
 #include <algorithm>
 #include <cassert>

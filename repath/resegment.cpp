@@ -7,7 +7,6 @@
 #include "base/units.h"
 #include "nc/emit.h"
 #include "repath/run_text.h"
-#include "repath/short_arcs.h"
 #include "repath/smoothed_path.h"
 
 namespace camber::repath {
@@ -33,7 +32,7 @@ Resegmenter::Resegmenter(const nc::Program& program, const nc::Interpretation& m
 
 Resegmenter::~Resegmenter() = default;
 
-const Resegmenter::Prepared& Resegmenter::prepared(const Run& stretch) {
+const Resegmenter::Prepared& Resegmenter::prepared(const BlockRun& stretch) {
   const auto [at, is_new] = prepared_.try_emplace({stretch.first_move, stretch.last_move});
   Prepared& out = at->second;
   if (!is_new) return out;
@@ -51,9 +50,9 @@ class Resegmenter::Writer {
  public:
   Writer(Resegmenter& resegmenter, const ResegmentOptions& options) : of_(resegmenter), options_(options) {}
 
-  void add(const Run& run) {
+  void add(const BlockRun& run) {
     const double length = length_for(of_.moves_, run, options_);
-    for (const Run& stretch : between_arcs(of_.program_, of_.moves_, run, {length, of_.options_.tolerance_mm}))
+    for (const BlockRun& stretch : between_arcs(of_.program_, of_.moves_, run, {length, of_.options_.tolerance_mm}))
       add(stretch, length);
   }
 
@@ -64,13 +63,13 @@ class Resegmenter::Writer {
   }
 
  private:
-  void add(const Run& stretch, double length_mm) {
+  void add(const BlockRun& stretch, double length_mm) {
     const Prepared& now = of_.prepared(stretch);
     if (!now.smoothed) return;
     const Layout layout = now.smoothed->lay_out(length_mm, options_.corners.any());
     const bool arcs = now.path.sagitta_mm > 0;
     if (arcs && layout.points.size() - 1 >= stretch.last_move - stretch.first_move + 1) {
-      for (const Run& lines : between_arcs(of_.program_, of_.moves_, stretch, {})) add(lines, length_mm);
+      for (const BlockRun& lines : between_arcs(of_.program_, of_.moves_, stretch, {})) add(lines, length_mm);
       return;
     }
     if (layout.points == now.path.points) return;
@@ -93,7 +92,7 @@ class Resegmenter::Writer {
 
 Resegmentation Resegmenter::lay_out(const ResegmentOptions& options) {
   Writer writer(*this, options);
-  for (const Run& run : runs_) writer.add(run);
+  for (const BlockRun& run : runs_) writer.add(run);
   return writer.result();
 }
 

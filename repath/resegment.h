@@ -2,9 +2,11 @@
 // Resegmenting: runs of short lines replaced by segments just long enough for the control.
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/geometry.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 #include "repath/compress.h"
@@ -43,7 +45,7 @@ struct SpacePath {
   double sagitta_mm = 0;  ///< maximum deviation of the lines between the points from arcs; 0: no arcs
 };
 /// `sagitta_mm`: of the lines that stand for arcs, greater than zero.
-SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double sagitta_mm);
+SpacePath space_path_of(const nc::Interpretation& moves, const BlockRun& run, double sagitta_mm);
 
 /// Where a segment lies.
 struct SegmentPlace {
@@ -62,7 +64,7 @@ struct Layout {
 
 /// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed, or where the control has no
 /// block time times the mean length of its blocks.
-double length_for(const nc::Interpretation& moves, const Run& run, const ResegmentOptions& options);
+double length_for(const nc::Interpretation& moves, const BlockRun& run, const ResegmentOptions& options);
 
 /// Between corners a smooth curve takes the place of the points (half of the tolerance), and segments of `length_mm`
 /// are laid on it, shorter ones where the whole tolerance asks for it. Where a curve leaves the old path by more, as
@@ -79,5 +81,43 @@ struct Resegmentation {
 
 /// Linear in the number of blocks. Does not throw on a program that was read and interpreted without errors.
 Resegmentation resegment(const nc::Program& program, const nc::Interpretation& moves, const ResegmentOptions& options);
+
+// Selection of the arcs of a run that are rewritten together with the neighbouring lines.
+
+/// Zeroes: every arc stays.
+struct ShortArcRule {
+  double length_mm = 0;     ///< of the segments to be laid
+  double tolerance_mm = 0;  ///< a chord of sqrt(8 r t) leaves a curve of radius r by t
+};
+
+/// The stretches of a run between arcs that stay. An arc is laid out again where it is shorter than the segment that
+/// would be laid on it, the length or the chord within the tolerance, and goes on smoothly (20 degrees) into a block of
+/// the run that is short too. Otherwise one block is best, and the arc stays. A stretch does not end on an arc whose
+/// mode (G2, G3) the text behind relies on. Stretches of one block are left out.
+std::vector<BlockRun> between_arcs(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
+                                   const ShortArcRule& rule);
+
+// A smooth curve through the points of a path, within a tolerance.
+
+/// A natural cubic spline over the points' chord length, from the first point to the last. The points in between are
+/// moved by at most `tolerance_mm`, such that the integral of the squared second derivative becomes least for the
+/// largest weight that the tolerance allows: the corners and the noise of the CAM system's chords go, the shape stays.
+/// Source: Reinsch, Smoothing by spline functions, Numerische Mathematik 10 (1967), with the ends held fast.
+class SmoothCurve {
+ public:
+  /// At least two points, no two that follow each other alike. Time and memory grow linearly with their number.
+  SmoothCurve(std::span<const Vec3> points, double tolerance_mm);
+
+  double length_mm() const { return knots_.back(); }  ///< of the chords
+  const std::vector<double>& knots_mm() const { return knots_; }
+  Vec3 at(double s_mm) const;
+  double largest_move_mm() const { return largest_move_; }  ///< of a point
+
+ private:
+  void solve(std::span<const Vec3> points, double weight);
+  std::vector<double> knots_;
+  std::vector<Vec3> values_, second_;  ///< at the knots
+  double largest_move_ = 0;
+};
 
 }  // namespace camber::repath

@@ -1,4 +1,4 @@
-#include "repath/rotary_choice.h"
+#include "repath/post_plan.h"
 
 #include <algorithm>
 #include <cmath>

@@ -40,7 +40,8 @@ bool is_motion(const nc::Word& w) {
 /// What the blocks of a run have in common.
 class RunBlockWriter {
  public:
-  RunBlockWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const TextStyle& style)
+  RunBlockWriter(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
+                 const TextStyle& style)
       : program_(program), style_(style) {
     const nc::Move& first = moves.moves[run.first_move];
     const nc::ModalState& state = moves.state_of(first);
@@ -147,7 +148,7 @@ class PointWriter : RunBlockWriter {
 
 class RunWriter : RunBlockWriter {
  public:
-  RunWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
+  RunWriter(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run, const RunPath& path,
             const TextStyle& style)
       : RunBlockWriter(program, moves, run, style),
         path_(path),
@@ -209,14 +210,15 @@ class RunWriter : RunBlockWriter {
   }
 
   const RunPath& path_;
-  const Run& run_;
+  const BlockRun& run_;
   nc::PlaneAxes axes_;
 };
 
 /// Blocks of languages in which each says how it moves, by the rules of the language.
 class SayingBlockWriter : RunBlockWriter {
  public:
-  SayingBlockWriter(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const TextStyle& style)
+  SayingBlockWriter(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
+                    const TextStyle& style)
       : RunBlockWriter(program, moves, run, style),
         rules_(*style.rules),
         block_(program, first_block_, style.numbers, rules_) {
@@ -224,7 +226,7 @@ class SayingBlockWriter : RunBlockWriter {
       if (std::string_view("XYZN").find(w.letter) == std::string_view::npos) own_.push_back(w);
   }
 
-  RunLines write(const RunPath& path, const Run& run, const std::vector<Primitive>& chain) {
+  RunLines write(const RunPath& path, const BlockRun& run, const std::vector<Primitive>& chain) {
     const nc::Plane plane = run.normal == 2 ? nc::Plane::xy : run.normal == 1 ? nc::Plane::zx : nc::Plane::yz;
     const nc::PlaneAxes axes = nc::axes_of(plane);
     bool arcs = false;
@@ -338,13 +340,13 @@ TextStyle text_style_of(const nc::Program& program, const nc::Interpretation& mo
   return style;
 }
 
-RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
+RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run, const RunPath& path,
                  const std::vector<Primitive>& chain, const TextStyle& style, bool says_mode) {
   if (!style.rules->motion_is_modal()) return SayingBlockWriter(program, moves, run, style).write(path, run, chain);
   return RunWriter(program, moves, run, path, style).write(chain, says_mode);
 }
 
-std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
+std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
                                  const SpacePath& path, const Layout& layout, const TextStyle& style,
                                  const LayoutFeeds& feeds) {
   const PointWriter points(program, moves, run, style);

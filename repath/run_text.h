@@ -28,7 +28,7 @@ struct RunLines {
   std::vector<std::size_t> line_of{};  ///< by primitive: the one in which its move is
   std::string mode_behind{};  ///< G1, where the chain ends on an arc and the blocks behind rely on G1; else empty
 };
-RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run, const RunPath& path,
+RunLines text_of(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run, const RunPath& path,
                  const std::vector<Primitive>& chain, const TextStyle& style, bool says_mode);
 
 /// What the segments of a layout get of the programmed feed; see ResegmentOptions.
@@ -43,7 +43,7 @@ bool mode_is_used_behind(const nc::Program& program, std::size_t block);
 /// The blocks of straight cuts to the points of a layout but its first: X Y Z that change, the N of the old block that
 /// ended where the new one does (each once), G1 as the run has it (and where it begins with an arc), and the F of the
 /// run's first block; where the feed is another one, that, and the programmed one in a block of its own behind.
-std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
+std::vector<std::string> text_of(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
                                  const SpacePath& path, const Layout& layout, const TextStyle& style,
                                  const LayoutFeeds& feeds);
 

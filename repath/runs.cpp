@@ -21,7 +21,7 @@ class RunFinder {
   RunFinder(const nc::Program& program, const nc::Interpretation& moves, RunKind kind)
       : moves_(moves), kind_(kind), blocks_(program, kind == RunKind::with_arcs) {}
 
-  std::vector<Run> find() {
+  std::vector<BlockRun> find() {
     const auto& all = moves_.moves;
     for (std::uint32_t m = 0; m < all.size(); ++m) {
       unsigned still = 0;
@@ -89,7 +89,7 @@ class RunFinder {
     if (open_ && behind - first_ >= 2) {
       const int plane_g = moves_.state_of(moves_.moves[first_]).plane_g;
       const int current = plane_g == 17 ? 2 : plane_g == 18 ? 1 : 0;
-      Run run{.first_move = first_, .last_move = behind - 1, .normal = current, .in_space = in_space()};
+      BlockRun run{.first_move = first_, .last_move = behind - 1, .normal = current, .in_space = in_space()};
       run.current_plane = (still_ >> current) & 1u;
       for (int axis = 2; !run.current_plane && axis >= 0; --axis)
         if ((still_ >> axis) & 1u) {
@@ -107,7 +107,7 @@ class RunFinder {
   RunKind kind_;
   PlainBlocks blocks_;
   ApartCounts apart_{};
-  std::vector<Run> runs_;
+  std::vector<BlockRun> runs_;
   bool open_ = false;
   std::uint32_t first_ = 0;
   unsigned still_ = 0;
@@ -132,7 +132,7 @@ void for_each_point(const nc::Interpretation& moves, std::uint32_t first, std::u
 }
 
 /// Whether the path goes on from one run to the next without a stop, and both may be seen as one.
-bool goes_on(const nc::Interpretation& moves, const Run& run, const Run& next) {
+bool goes_on(const nc::Interpretation& moves, const BlockRun& run, const BlockRun& next) {
   const nc::Move &last = moves.moves[run.last_move], &first = moves.moves[next.first_move];
   if (next.first_move != run.last_move + 1 || last.exact_stop || run.normal != next.normal ||
       run.current_plane != next.current_plane || run.in_space != next.in_space)
@@ -144,13 +144,13 @@ bool goes_on(const nc::Interpretation& moves, const Run& run, const Run& next) {
 
 }  // namespace
 
-std::vector<Run> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
+std::vector<BlockRun> find_runs(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
   return RunFinder(program, moves, kind).find();
 }
 
 std::string why_unchanged(const nc::Program& program, const nc::Interpretation& moves, RunKind kind) {
   RunFinder finder(program, moves, kind);
-  const std::vector<Run> runs = finder.find();
+  const std::vector<BlockRun> runs = finder.find();
   const auto cuts = std::ranges::count_if(
       moves.moves, [](const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; });
   const ApartCounts& apart = finder.apart();
@@ -162,12 +162,12 @@ std::string why_unchanged(const nc::Program& program, const nc::Interpretation& 
   return why;
 }
 
-std::vector<Run> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart) {
+std::vector<BlockRun> runs_to_compress(const nc::Program& program, const nc::Interpretation& moves, bool apart) {
   constexpr std::uint32_t kMinMoves = 4;
-  std::vector<Run> out, in_space = find_runs(program, moves, RunKind::in_space), planar;
+  std::vector<BlockRun> out, in_space = find_runs(program, moves, RunKind::in_space), planar;
   if (apart) planar = find_runs(program, moves, RunKind::in_plane);
   auto next = planar.begin();
-  for (Run run : in_space) {
+  for (BlockRun run : in_space) {
     for (; next != planar.end() && next->last_move <= run.last_move; ++next) {
       if (next->current_plane || next->last_move - next->first_move + 1 < kMinMoves) continue;
       if (next->first_move > run.first_move + 1) {
@@ -191,7 +191,7 @@ struct Beside {
 
 /// The far end of the cut before or behind a run, or of a piece of its tangent where it is an arc; nothing where the
 /// path does not go on smoothly for all that the text says, or not in the run's plane.
-std::optional<Beside> beside(const nc::Interpretation& moves, const Run& run, bool before) {
+std::optional<Beside> beside(const nc::Interpretation& moves, const BlockRun& run, bool before) {
   const std::size_t at = before ? run.first_move : run.last_move, next = before ? at - 1 : at + 1;
   if ((before && at == 0) || next >= moves.moves.size()) return std::nullopt;
   const nc::Move &own = moves.moves[at], &other = moves.moves[next];
@@ -210,8 +210,8 @@ std::optional<Beside> beside(const nc::Interpretation& moves, const Run& run, bo
   return Beside{program_point(moves, other, joint) + way, arc};
 }
 
-RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
-  const Run& first = runs.front();
+RunChain chain_of(const nc::Interpretation& moves, std::span<const BlockRun> runs) {
+  const BlockRun& first = runs.front();
   const nc::PlaneAxes axes = nc::axes_of(first.normal == 2   ? nc::Plane::xy
                                          : first.normal == 1 ? nc::Plane::zx
                                                              : nc::Plane::yz);
@@ -226,7 +226,7 @@ RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
   if (before) add(before->place_mm, moves.moves[first.first_move].block);
   const auto begin = static_cast<std::uint32_t>(path.points.size());
   for_each_point(moves, first.first_move, runs.back().last_move, add, [&](std::uint32_t m) {
-    const Run& run = runs[out.parts.size()];
+    const BlockRun& run = runs[out.parts.size()];
     if (m != run.last_move) return;
     const auto here = static_cast<std::uint32_t>(path.points.size() - 1);
     out.parts.push_back({run, out.parts.empty() ? begin : out.parts.back().last_point, here});
@@ -244,7 +244,7 @@ RunChain chain_of(const nc::Interpretation& moves, std::span<const Run> runs) {
 
 }  // namespace
 
-void for_each_chain(const nc::Interpretation& moves, std::span<const Run> runs,
+void for_each_chain(const nc::Interpretation& moves, std::span<const BlockRun> runs,
                     const std::function<void(const RunChain&)>& take) {
   for (std::size_t k = 0, first = 0; k < runs.size(); ++k) {
     if (k + 1 < runs.size() && goes_on(moves, runs[k], runs[k + 1])) continue;

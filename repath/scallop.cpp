@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "repath/swept_row.h"
-
 namespace camber::repath {
 namespace {
 

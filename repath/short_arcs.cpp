@@ -1,4 +1,4 @@
-#include "repath/short_arcs.h"
+#include "repath/resegment.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ double radius_of_curvature_mm(const nc::Interpretation& moves, const nc::Move& m
 
 class Chooser {
  public:
-  Chooser(const nc::Interpretation& moves, const Run& run, const ShortArcRule& rule)
+  Chooser(const nc::Interpretation& moves, const BlockRun& run, const ShortArcRule& rule)
       : moves_(moves), run_(run), rule_(rule) {}
 
   bool stays(std::uint32_t m) const {
@@ -54,16 +54,16 @@ class Chooser {
   }
 
   const nc::Interpretation& moves_;
-  const Run& run_;
+  const BlockRun& run_;
   const ShortArcRule& rule_;
 };
 
 }  // namespace
 
-std::vector<Run> between_arcs(const nc::Program& program, const nc::Interpretation& moves, const Run& run,
-                              const ShortArcRule& rule) {
+std::vector<BlockRun> between_arcs(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,
+                                   const ShortArcRule& rule) {
   const Chooser chooser(moves, run, rule);
-  std::vector<Run> out;
+  std::vector<BlockRun> out;
   const auto close = [&](std::uint32_t first, std::uint32_t behind) {
     while (behind > first && is_arc(moves.moves[behind - 1]) &&
            mode_is_used_behind(program, moves.moves[behind - 1].block))
@@ -83,7 +83,7 @@ std::vector<Run> between_arcs(const nc::Program& program, const nc::Interpretati
   return out;
 }
 
-SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double sagitta_mm) {
+SpacePath space_path_of(const nc::Interpretation& moves, const BlockRun& run, double sagitta_mm) {
   SpacePath path;
   const auto add = [&](const nc::Move& move, const Vec3& p, std::uint32_t block) {
     const Vec3 point = program_point(moves, move, p);
@@ -109,7 +109,7 @@ SpacePath space_path_of(const nc::Interpretation& moves, const Run& run, double 
 
 double segment_length_mm(double feed_mm_per_s, double block_time_s) { return feed_mm_per_s * block_time_s; }
 
-double length_for(const nc::Interpretation& moves, const Run& run, const ResegmentOptions& options) {
+double length_for(const nc::Interpretation& moves, const BlockRun& run, const ResegmentOptions& options) {
   constexpr double kMin = 0.01;
   if (options.length_mm > 0) return std::max(options.length_mm, kMin);
   double base = segment_length_mm(moves.moves[run.first_move].feed_mm_per_s, options.block_time_s);

@@ -18,7 +18,7 @@ void shorten_lines(const Polyline& path, const FitOptions& options, const Fitter
                    const std::vector<bool>& corners, std::vector<Primitive>& chain) {
   FitOptions any_kink = options;
   any_kink.max_kink_rad = std::numeric_limits<double>::infinity();
-  const Joints joints(path, any_kink, corners);
+  const PieceJoints joints(path, any_kink, corners);
   ChainWindow window(path, any_kink, fitter, joints);
   std::vector<std::uint32_t> ends;
   std::vector<Primitive> out;

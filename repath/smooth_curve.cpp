@@ -1,4 +1,4 @@
-#include "repath/smooth_curve.h"
+#include "repath/resegment.h"
 
 #include <algorithm>
 #include <cassert>

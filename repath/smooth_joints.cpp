@@ -1,4 +1,4 @@
-#include "repath/smooth_joints.h"
+#include "repath/shorten_lines.h"
 
 #include <algorithm>
 #include <array>
@@ -106,7 +106,7 @@ class Smoother {
 
   const FitOptions& options_;
   const std::vector<bool>& corners_;
-  Joints joints_;
+  PieceJoints joints_;
   ChainWindow window_;
   std::vector<std::uint32_t> ends_;
 };

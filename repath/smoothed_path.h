@@ -51,13 +51,13 @@ class Resegmenter {
  private:
   struct Prepared;
   class Writer;
-  const Prepared& prepared(const Run& stretch);
+  const Prepared& prepared(const BlockRun& stretch);
 
   const nc::Program& program_;
   const nc::Interpretation& moves_;
   ResegmentOptions options_;
   TextStyle style_;
-  std::vector<Run> runs_;
+  std::vector<BlockRun> runs_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Prepared> prepared_;  ///< by a stretch's first and last move
 };
 

@@ -1,4 +1,4 @@
-#include "repath/spare_lines.h"
+#include "repath/shorten_lines.h"
 
 #include <algorithm>
 #include <limits>
@@ -101,7 +101,7 @@ class LineSparer {
   const Polyline path_;
   const FitOptions& options_;
   const std::vector<bool> ends_at_;
-  Joints joints_;
+  PieceJoints joints_;
   ChainWindow window_;
   std::vector<std::uint32_t> ends_;
 };

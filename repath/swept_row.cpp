@@ -1,4 +1,4 @@
-#include "repath/swept_row.h"
+#include "repath/scallop.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "report/block_time_plot.h"
+#include "report/fit_summary.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 
 #include "base/units.h"
 #include "dynamics/tool_modes.h"
-#include "report/lobes_svg.h"
+#include "report/lobes_summary.h"
 #include "simulate/chatter.h"
 
 namespace camber::report {

@@ -6,7 +6,6 @@
 #include "base/numbers.h"
 #include "nc/language.h"
 #include "report/machine_page.h"
-#include "report/program_page.h"
 
 namespace camber::report {
 namespace {

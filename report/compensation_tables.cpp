@@ -1,4 +1,4 @@
-#include "report/compensation_tables.h"
+#include "report/page_tables.h"
 
 #include <fmt/format.h>
 

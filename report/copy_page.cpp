@@ -1,4 +1,4 @@
-#include "report/copy_page.h"
+#include "report/copy_summary.h"
 
 #include <algorithm>
 #include <functional>

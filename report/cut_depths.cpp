@@ -1,4 +1,4 @@
-#include "report/cut_depths.h"
+#include "report/job_proposal.h"
 
 #include <algorithm>
 #include <cmath>

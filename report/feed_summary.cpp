@@ -1,4 +1,4 @@
-#include "report/feed_summary.h"
+#include "report/time_summary.h"
 
 #include <fmt/format.h>
 

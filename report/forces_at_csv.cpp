@@ -1,4 +1,4 @@
-#include "report/forces_at_csv.h"
+#include "report/forces_csv.h"
 
 #include <cmath>
 #include <iterator>

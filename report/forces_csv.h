@@ -1,11 +1,12 @@
 #pragma once
-// Loads along the path, a row a spindle turn or a block, whichever is shorter; forces.csv.
+// Tables of loads: along the path (forces.csv), of one turn of the spindle, and of the spindle by tool and line.
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/geometry.h"
-
+#include "deflection/tooth_pass.h"
 #include "machine/job_file.h"
 #include "simulate/predict.h"
 
@@ -47,5 +48,30 @@ void for_each_force_row(const machine::Job& job, const simulate::SimulatedProgra
 /// [file-unwritable].
 void write_forces_csv(const std::string& path, const machine::Job& job, const simulate::SimulatedProgram& program,
                       const simulate::Prediction& prediction);
+
+// forces_at_LINE.csv: one turn of the spindle in steps of a degree.
+
+/// Columns: angle_deg, for every tooth t fx_t_N,fy_t_N,fz_t_N,h_max_t_mm, then fx_N,fy_N,fz_N,torque_Nm of all teeth.
+/// 360 rows. Forces act on the tool, in machine axes. angle_deg is the turn of the spindle (clockwise seen from
+/// above) since tooth 1's edge at the tip pointed along +X; the teeth follow each other, tooth 2 after tooth 1.
+/// Rotation steps other than a degree are interpolated. Throws InputError [file-unwritable].
+void write_forces_at_csv(const std::string& path, const deflection::TurnForces& turn);
+
+// Load of the spindle by tool and line, for who sets limits of a load monitor; spindle_load.csv.
+
+/// The heaviest turn of the spindle in a line of the program. Power and torque are means over that turn, for cutting
+/// alone: what a monitor shows above the idle spindle, before the spindle's own losses.
+struct SpindleLoad {
+  int tool = 0;
+  std::size_t line = 0;
+  double power_W = 0, torque_Nm = 0;
+};
+
+/// A row for each tool and line that removes material, by tool in the order of its first cut, then by line.
+std::vector<SpindleLoad> spindle_loads(const machine::Job& job, const simulate::SimulatedProgram& program,
+                                       const simulate::Prediction& prediction);
+
+/// Columns tool,line,power_W,torque_Nm. Throws InputError [file-unwritable].
+void write_spindle_load_csv(const std::string& path, const std::vector<SpindleLoad>& loads);
 
 }  // namespace camber::report

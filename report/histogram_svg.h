@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "compensate/compensate.h"
 #include "report/surface_samples.h"
 
 namespace camber::report {
@@ -15,5 +16,13 @@ std::vector<double> error_histogram(const SurfaceSamples& samples, double Surfac
 /// Bars of the error; with `compared` error_um in grey and error_after_um in blue on one axis, named by `names`.
 std::string histogram_svg(const SurfaceSamples& samples, bool compared, double limit_um,
                           const std::array<std::string, 2>& names = {"before", "after"});
+
+// Machine time against error, as a picture that needs no script.
+
+/// The 95th percentile of every predicted round over its machine time, small; the best program for each time allowed
+/// joined by a line, filled where runs are cut twice; the emitted program marked; a dashed line at `tolerance_um`.
+/// Rounds whose error is far above those of the times (the given program's, as a rule) are left out. Empty where the
+/// compensation had no lever that takes time.
+std::string time_error_svg(const compensate::CompensationResult& c, double tolerance_um);
 
 }  // namespace camber::report

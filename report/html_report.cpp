@@ -7,7 +7,6 @@
 
 #include "base/output_file.h"
 #include "report/histogram_svg.h"
-#include "report/page_data.h"
 #include "report/page_parts.h"
 #include "report/page_tables.h"
 

@@ -12,8 +12,6 @@
 #include "machine/machine_presets.h"
 #include "machine/material_presets.h"
 #include "machine/program_comments.h"
-#include "report/stock_proposal.h"
-#include "report/tool_guess.h"
 #include "simulate/memory.h"
 
 namespace camber::report {

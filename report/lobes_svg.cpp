@@ -1,4 +1,4 @@
-#include "report/lobes_svg.h"
+#include "report/lobes_summary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -25,7 +25,7 @@ MachineView machine_view(const machine::Job& job, const std::vector<PathRow>& ro
   for (const PathRow& row : rows) {
     const auto tool = job.tools.find(static_cast<int>(row.tool));
     if (tool == job.tools.end() || out.tools.contains(row.tool)) continue;
-    out.tools[row.tool] = simulate::tool_outline(tool->second, kStep_mm, 1e6);
+    out.tools[row.tool] = checks::tool_outline(tool->second, kStep_mm, 1e6);
   }
   return out;
 }
@@ -57,7 +57,7 @@ Json machine_json(const MachineView& view) {
   Json tools = Json::object();
   for (const auto& [number, rings] : view.tools) {
     Json outline = Json::array();
-    for (const simulate::OutlineRing& ring : rings)
+    for (const checks::OutlineRing& ring : rings)
       outline.push_back({static_cast<int>(ring.part), rounded(ring.radius_mm), rounded(ring.height_mm)});
     tools[std::to_string(number)] = outline;
   }

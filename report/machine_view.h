@@ -4,15 +4,15 @@
 #include <vector>
 
 #include "base/json.h"
+#include "checks/tool_outline.h"
 #include "machine/job_file.h"
 #include "report/path_rows.h"
-#include "simulate/tool_outline.h"
 
 namespace camber::report {
 
 struct MachineView {
   machine::Machine machine;  ///< with [kinematics]
-  std::map<std::uint32_t, std::vector<simulate::OutlineRing>> tools;
+  std::map<std::uint32_t, std::vector<checks::OutlineRing>> tools;
 };
 
 /// True if the tool leaves +Z or a rotary axis turns.

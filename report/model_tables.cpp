@@ -1,4 +1,4 @@
-#include "report/model_tables.h"
+#include "report/page_tables.h"
 
 #include <cmath>
 #include <filesystem>

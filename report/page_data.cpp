@@ -1,4 +1,4 @@
-#include "report/page_data.h"
+#include "report/html_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "report/path_arrays.h"
+#include "report/check_summary.h"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "report/post_summary.h"
+#include "report/rewrite_summary.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "report/program_page.h"
+#include "report/check_summary.h"
 
 #include "report/page_tables.h"
 

@@ -1,6 +1,6 @@
 #include "report/report_data.h"
 #include "machine/assumptions.h"
-#include "report/compensation_tables.h"
+#include "report/page_tables.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,12 +10,9 @@
 
 #include "report/chatter_page.h"
 #include "report/feature_results.h"
-#include "report/model_tables.h"
-#include "report/page_tables.h"
+#include "report/histogram_svg.h"
 #include "report/summary.h"
-#include "report/time_error_svg.h"
 #include "report/verdict_text.h"
-#include "report/worst_lines.h"
 #include "simulate/verdict.h"
 
 namespace camber::report {

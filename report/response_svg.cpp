@@ -1,4 +1,4 @@
-#include "report/response_svg.h"
+#include "report/fit_summary.h"
 
 #include <algorithm>
 #include <array>

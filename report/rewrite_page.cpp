@@ -1,4 +1,4 @@
-#include "report/rewrite_page.h"
+#include "report/rewrite_summary.h"
 
 #include <algorithm>
 #include <iterator>

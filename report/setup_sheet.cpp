@@ -1,4 +1,4 @@
-#include "report/setup_sheet.h"
+#include "report/check_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,15 +11,15 @@
 
 #include "base/numbers.h"
 #include "base/units.h"
+#include "checks/tool_outline.h"
 #include "machine/assumptions.h"
 #include "report/page_parts.h"
 #include "report/page_tables.h"
-#include "simulate/tool_outline.h"
 
 namespace camber::report {
 namespace {
 
-using simulate::OutlineRing;
+using checks::OutlineRing;
 
 constexpr double kPageWidth_mm = 186;   // A4 less its margins
 constexpr double kToolHeight_mm = 100;  // of the drawings
@@ -179,7 +179,7 @@ struct Part {
 
 std::vector<Part> parts_of(const machine::Tool& tool, double top_mm) {
   std::vector<Part> out;
-  for (const OutlineRing& ring : simulate::tool_outline(tool, std::max(0.05, tool.diameter_mm / 60), top_mm)) {
+  for (const OutlineRing& ring : checks::tool_outline(tool, std::max(0.05, tool.diameter_mm / 60), top_mm)) {
     if (out.empty() || out.back().part != ring.part) out.push_back({ring.part, {}});
     out.back().points.emplace_back(ring.radius_mm, ring.height_mm);
   }

@@ -1,11 +1,10 @@
-#include "report/spindle_load.h"
+#include "report/forces_csv.h"
 
 #include <algorithm>
 #include <map>
 
 #include "base/numbers.h"
 #include "base/output_file.h"
-#include "report/forces_csv.h"
 
 namespace camber::report {
 

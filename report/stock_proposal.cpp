@@ -1,4 +1,4 @@
-#include "report/stock_proposal.h"
+#include "report/job_proposal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "machine/program_comments.h"
 #include "nc/known_places.h"
 #include "nc/summary.h"
-#include "report/cut_depths.h"
 
 namespace camber::report {
 namespace {

@@ -1,4 +1,4 @@
-#include "report/tool_guess.h"
+#include "report/job_proposal.h"
 
 #include <algorithm>
 #include <array>

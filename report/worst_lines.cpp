@@ -1,4 +1,4 @@
-#include "report/worst_lines.h"
+#include "report/page_tables.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "report/page_tables.h"
 
 namespace camber::report {
 namespace {

@@ -103,7 +103,7 @@ void part_contour(const machine::Job& job, const SimulatedProgram& program, Targ
       contour_of(job, program, program.moves_in_part(), without_lag(job.machine), target);
 }
 
-void mark_contour_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece,
+void mark_contour_of(const machine::Job& job, const motion::PathStretch& path, const motion::StretchPiece& piece,
                      removal::SurfaceMap& map) {
   mark_straight(map, outline_of(job.tools.at(path.run_of(piece).tool)), path.stamps_of(piece),
                 static_cast<std::int32_t>(path.begin_of(piece)), nullptr);

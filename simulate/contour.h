@@ -1,6 +1,6 @@
 #pragma once
 // Contour error: the effect of servo lag and corner rounding on the surface, without deflection.
-#include "simulate/path_stretch.h"
+#include "motion/path_stretch.h"
 #include "simulate/predict.h"
 
 namespace camber::simulate {
@@ -19,7 +19,7 @@ void part_contour(const machine::Job& job, const SimulatedProgram& program, Targ
 inline constexpr double kWorthParting_um = 1;
 
 /// Marks the stamps of a piece on a map.
-void mark_contour_of(const machine::Job& job, const PathStretch& path, const PathPiece& piece,
+void mark_contour_of(const machine::Job& job, const motion::PathStretch& path, const motion::StretchPiece& piece,
                      removal::SurfaceMap& map);
 
 }  // namespace camber::simulate

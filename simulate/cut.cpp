@@ -6,10 +6,10 @@
 
 #include "base/cancel.h"
 #include "deflection/beam.h"
+#include "motion/path_stretch.h"
 #include "removal/engagement.h"
 #include "removal/known_run.h"
 #include "simulate/cut_parts.h"
-#include "simulate/path_stretch.h"
 #include "simulate/pieces.h"
 #include "simulate/tooth_loads.h"
 
@@ -53,7 +53,7 @@ double deflection_limit_mm(const CutTool& tool, const Stamp& stamp) {
   return std::min({band, deflected, kOfDiameter * tool.diameter_mm});
 }
 
-void watch_range(const CutTool& tool, const Stretch& stretch, CutResult& result) {
+void watch_range(const CutTool& tool, const CutStretch& stretch, CutResult& result) {
   const std::span<const Stamp> stamps = stretch.stamps();
   const DeflectionTable& deflections = stretch.deflections;
   std::vector<StampLoad>& loads = stretch.loads;
@@ -82,7 +82,7 @@ class Cutter {
            std::int32_t first_id, CutResult& result) {
     prepare_table(count);
     std::vector<StampLoad> loads(count);
-    const Stretch stretch{all, from, first_id, deflections_, loads};
+    const CutStretch stretch{all, from, first_id, deflections_, loads};
     coupling_->cut(stretch, before_, result);
     if (!tool_.options.drilling) watch_range(tool_, stretch, result);
     marks_->leave(stretch, contacts, tool_.options.surface);
@@ -128,7 +128,7 @@ class Cutter {
   }
 
   /// The marks as the same cut would leave them on a part that does not yield.
-  void mark_tool_alone(const Stretch& stretch) const {
+  void mark_tool_alone(const CutStretch& stretch) const {
     DeflectionTable tool = stretch.deflections.parts ? stretch.deflections.of_tool_alone() : stretch.deflections;
     marks_->leave({stretch.all, stretch.from, stretch.first_id, tool, stretch.loads}, {}, tool_.options.tool_surface);
   }
@@ -185,7 +185,8 @@ CutResult cut_range(Stock& stock, const machine::Tool& tool, const machine::Mate
   if (before) cutter.begin_after(*before);
   // Which stamps are read depends on where stretches begin: in rigid coupling they are the pieces of sections.
   const bool rigid = options.coupling == machine::Coupling::rigid;
-  const std::size_t most = rigid ? std::min(options.rigid_stretch_stamps, kPieceStamps) : options.stretch_stamps,
+  const std::size_t most =
+                        rigid ? std::min(options.rigid_stretch_stamps, motion::kPieceStamps) : options.stretch_stamps,
                     stretches = (count + most - 1) / most;
   for (std::size_t i = 0; i < stretches; ++i) {
     cancellation_point();

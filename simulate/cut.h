@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "deflection/chip_arc.h"
 #include "deflection/part_compliance.h"
 #include "deflection/static_cut.h"
 #include "deflection/tooth_pass.h"

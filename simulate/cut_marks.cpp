@@ -31,7 +31,8 @@ class EvenMarks : public Marks {
  public:
   explicit EvenMarks(const CutTool& tool) : tool_(tool) {}
 
-  void leave(const Stretch& stretch, std::span<const Contact> contacts, removal::SurfaceMap* surface) const override {
+  void leave(const CutStretch& stretch, std::span<const Contact> contacts,
+             removal::SurfaceMap* surface) const override {
     if (surface) surface->mark(tool_.envelope, stretch.stamps(), stretch.deflections, stretch.id());
     if (contacts.empty()) return;
     tell_contacts(tool_.envelope, stretch.stamps(),
@@ -39,7 +40,7 @@ class EvenMarks : public Marks {
   }
 
  private:
-  DeflectionTable without_run_out(const Stretch& stretch) const {
+  DeflectionTable without_run_out(const CutStretch& stretch) const {
     DeflectionTable out = stretch.deflections;
     for (std::size_t k = 0; k < out.stamps; ++k)
       tool_.run_out.add(stretch.from + k, -1, out.nodes(), {out.row(static_cast<std::ptrdiff_t>(k)), out.row_size()});
@@ -54,7 +55,8 @@ class UnevenMarks : public Marks {
  public:
   explicit UnevenMarks(const CutTool& tool) : tool_(tool) {}
 
-  void leave(const Stretch& stretch, std::span<const Contact> contacts, removal::SurfaceMap* surface) const override {
+  void leave(const CutStretch& stretch, std::span<const Contact> contacts,
+             removal::SurfaceMap* surface) const override {
     if (contacts.empty() && !surface) return;
     const deflection::ToothMarks& teeth = *tool_.tooth_marks;
     const std::span<StampLoad> loads = stretch.loads;
@@ -80,7 +82,8 @@ class HoleMarks : public Marks {
  public:
   explicit HoleMarks(const CutTool& tool) : tool_(tool) {}
 
-  void leave(const Stretch& stretch, std::span<const Contact> contacts, removal::SurfaceMap* surface) const override {
+  void leave(const CutStretch& stretch, std::span<const Contact> contacts,
+             removal::SurfaceMap* surface) const override {
     const std::span<const Stamp> stamps = stretch.stamps();
     if (surface) mark(*surface, stamps, stretch.id());
     if (!contacts.empty()) tell_contacts(tool_.envelope, stamps, stretch.deflections, contacts, stretch.loads);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "deflection/run_out_offsets.h"
-#include "deflection/tooth_marks.h"
 #include "deflection/tooth_pass.h"
 #include "removal/deflection_table.h"
 #include "simulate/cut.h"
@@ -44,7 +43,7 @@ struct CutTool {
 };
 
 /// Stamps from ... of all, which are cut together, their deflections and their loads (one per stamp).
-struct Stretch {
+struct CutStretch {
   std::span<const removal::Stamp> all;
   std::size_t from = 0;
   std::int32_t first_id = 0;  ///< of all[0]
@@ -60,7 +59,7 @@ class Coupling {
  public:
   virtual ~Coupling() = default;
   /// Fills deflections and loads of the stretch; `before`: of the stamps before it.
-  virtual void cut(const Stretch& stretch, const BendBefore& before, CutResult& result) = 0;
+  virtual void cut(const CutStretch& stretch, const BendBefore& before, CutResult& result) = 0;
   /// Leaves the stock as cut. Returns the volume removed, mm^3.
   virtual double commit() = 0;
 };
@@ -76,7 +75,8 @@ class Marks {
   virtual ~Marks() = default;
   /// Marks the surface (null: none) and fills StampLoad::contact_deflection_mm at the contacts (one per stamp, or
   /// empty).
-  virtual void leave(const Stretch& stretch, std::span<const Contact> contacts, removal::SurfaceMap* surface) const = 0;
+  virtual void leave(const CutStretch& stretch, std::span<const Contact> contacts,
+                     removal::SurfaceMap* surface) const = 0;
 };
 
 /// Of even teeth, of teeth that are not even, or of a drill.

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/diagnostics.h"
-#include "simulate/setup_checks.h"
+#include "checks/setup_checks.h"
 
 namespace camber::simulate {
 namespace {
@@ -47,7 +47,7 @@ removal::Stock job_stock(const machine::Job& job, double band,
   if (job.stock.mesh.empty())
     fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
   // What the stock alone needs is asked before the mesh takes its part.
-  const machine::Box box = stl_box(job.stock.mesh);
+  const machine::Box box = checks::stl_box(job.stock.mesh);
   about_to(box.min_mm, box.max_mm);
   // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
   const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);

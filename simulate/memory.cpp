@@ -77,14 +77,14 @@ class HeightMap {
 };
 
 /// The stamps of a run that are in memory.
-std::vector<std::span<const removal::Stamp>> kept_of(const PathStretch& path, const removal::ToolRun& run) {
+std::vector<std::span<const removal::Stamp>> kept_of(const motion::PathStretch& path, const removal::ToolRun& run) {
   std::vector<std::span<const removal::Stamp>> out;
   for (const ListRange& range : path.kept_in(run.from, run.count))
     out.push_back(path.stamps_of(run).subspan(range.from, range.end - range.from));
   return out;
 }
 
-double cell_of(const Job& job, const PathStretch& path, const StockSize& stock) {
+double cell_of(const Job& job, const motion::PathStretch& path, const StockSize& stock) {
   constexpr double kVoxels = 16, kOfRadius = 0.25, kOfStock = 1e-3;
   const Vec3 size = stock.max_mm - stock.min_mm;
   double cell = std::max(kVoxels * job.simulation.voxel_mm, kOfStock * std::max(size.x(), size.y()));
@@ -102,7 +102,7 @@ double thickness(double band_voxels) { return 2 * band_voxels - 1 + kLeaf - 1; }
 
 namespace {
 
-double cut_area_of(const Job& job, const PathStretch& path, const StockSize& stock) {
+double cut_area_of(const Job& job, const motion::PathStretch& path, const StockSize& stock) {
   const double cell = cell_of(job, path, stock);
   HeightMap map(stock, cell);
   for (const auto& run : path.runs) {
@@ -162,7 +162,7 @@ double field_bytes(const Vec3& size, double voxel, double band_voxels) {
 namespace {
 
 /// The tiles that stamps swept together change are in memory until all of them are cut.
-double swept_at_once_mm2(const Job& job, const PathStretch& path, double cut_mm2) {
+double swept_at_once_mm2(const Job& job, const motion::PathStretch& path, double cut_mm2) {
   constexpr double kAtOnce = 10000;
   double most = 0;
   for (const auto& run : path.runs) {
@@ -178,7 +178,7 @@ double swept_at_once_mm2(const Job& job, const PathStretch& path, double cut_mm2
   return std::min(cut_mm2, most);
 }
 
-double table_bytes(const Job& job, const PathStretch& path, const StockSize& stock) {
+double table_bytes(const Job& job, const motion::PathStretch& path, const StockSize& stock) {
   const bool rigid = job.simulation.coupling == machine::Coupling::rigid;
   const CutOptions options;
   const std::size_t stretch = rigid ? options.rigid_stretch_stamps : options.stretch_stamps;
@@ -201,11 +201,11 @@ double table_bytes(const Job& job, const PathStretch& path, const StockSize& sto
 
 MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::Interpretation& moves,
                              const removal::StampPath& path, const StockSize& stock, const removal::Region* within) {
-  return memory_factors(job, text, moves, PathStretch(path), stock, within);
+  return memory_factors(job, text, moves, motion::PathStretch(path), stock, within);
 }
 
 MemoryFactors memory_factors(const Job& job, const nc::Program& text, const nc::Interpretation& moves,
-                             const PathStretch& path, const StockSize& stock, const removal::Region* within) {
+                             const motion::PathStretch& path, const StockSize& stock, const removal::Region* within) {
   const StockSize part = within ? clipped(stock, *within) : stock;
   const double cut = cut_area_of(job, path, part);
   std::size_t stamps = 0, own = 0;

@@ -14,7 +14,6 @@
 #include "removal/engagement.h"
 #include "simulate/cut.h"
 #include "simulate/tooth_loads.h"
-#include "simulate/wall_thickness.h"
 #include "workpiece/elastic.h"
 
 namespace camber::simulate {

@@ -7,26 +7,19 @@
 #include <span>
 #include <vector>
 
+#include "checks/setup_checks.h"
 #include "machine/job_file.h"
+#include "motion/path_stretch.h"
 #include "removal/stock.h"
 #include "simulate/cut.h"
-#include "simulate/path_stretch.h"
 #include "simulate/predict.h"
 #include "simulate/setup.h"
-#include "simulate/setup_checks.h"
 
 namespace camber::simulate {
 
-/// simulate_motion() in two steps. First: reads, interprets and checks a program; `path` and `feed` are empty.
-SimulatedProgram read_moves(SourceText source, const machine::Job& job, Diagnostics& diagnostics);
-/// Second: times it, and stamps it. Its text is not looked at. Twice the same. `stamps` (may be empty): see
-/// removal::StampBuilder.
-void time_path(SimulatedProgram& program, const machine::Job& job, const feedmodel::SampleSink& samples,
-               const removal::StampSink& stamps = {});
-
 /// memory_factors() of a path of which some stamps are in memory.
 MemoryFactors memory_factors(const machine::Job& job, const nc::Program& text, const nc::Interpretation& moves,
-                             const PathStretch& path, const StockSize& stock, const removal::Region* within);
+                             const motion::PathStretch& path, const StockSize& stock, const removal::Region* within);
 
 /// What a prediction of the program in this stock needs. Error [voxel-memory], as check_memory(). Requires a program
 /// that is timed.
@@ -34,7 +27,7 @@ MemoryEstimate check_memory_of(const machine::Job& job, const SimulatedProgram& 
                                Diagnostics& diagnostics);
 
 /// Where the tools of a program go that cut, beside the job's stock.
-Places places_of(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock);
+checks::Places places_of(const machine::Job& job, const SimulatedProgram& program, const machine::Box& stock);
 
 /// The programs of a job.
 struct Programs {
@@ -65,7 +58,7 @@ struct TargetWork {
   const removal::Region* within = nullptr;
   /// Of a target whose path SimulatedProgram::path has not got (`within` is given then): as the machine runs it, and
   /// nominal.
-  const ThinPath *path = nullptr, *nominal = nullptr;
+  const motion::SparsePath *path = nullptr, *nominal = nullptr;
 };
 Blank make_blank(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, double min_chip_mm,
                  const TargetWork& work);
@@ -88,7 +81,8 @@ struct PieceCut {
   std::function<void(double)> progress{};
 };
 /// Cuts a part of a run; `stock` is as the stamps before it have left it.
-CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const PathStretch& path, const PieceCut& piece);
+CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const motion::PathStretch& path,
+                    const PieceCut& piece);
 
 /// As cut(): stamps from ... from + count - 1 alone. Those before them are in the stock, and `before` says how they
 /// were bent, where that is known; contacts and loads are of these.

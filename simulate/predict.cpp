@@ -9,19 +9,19 @@
 
 #include "base/process_memory.h"
 #include "base/stage.h"
+#include "checks/setup_checks.h"
+#include "motion/job_checks.h"
+#include "motion/operations.h"
+#include "motion/path_stretch.h"
 #include "nc/interpreter.h"
 #include "removal/engagement.h"
 #include "removal/tool_path.h"
 #include "simulate/chatter.h"
 #include "simulate/contour.h"
-#include "simulate/job_checks.h"
 #include "simulate/job_stock.h"
 #include "simulate/memory.h"
-#include "simulate/operations.h"
-#include "simulate/path_stretch.h"
 #include "simulate/pieces.h"
 #include "simulate/region.h"
-#include "simulate/setup_checks.h"
 #include "simulate/validity.h"
 #include "simulate/verdict.h"
 
@@ -51,7 +51,7 @@ double thickest_chip_mm(const Job& job, const removal::StampPath& path) {
 }
 
 /// Of an upright path.
-double thickest_chip_mm(const PathOutline& path) {
+double thickest_chip_mm(const motion::PathOutline& path) {
   double out = 0;
   for (std::size_t r = 0; r < path.runs.size(); ++r)
     if (path.runs[r].kind != removal::RunKind::tapping) out = std::max(out, path.of_runs[r].longest_feed_mm);
@@ -66,7 +66,7 @@ double band_voxels(const Job& job, double thickest) {
 
 MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock, double band,
                                const TargetWork& work, Diagnostics& diagnostics) {
-  const PathStretch path = work.path ? work.path->stretch() : PathStretch(program.path);
+  const motion::PathStretch path = work.path ? work.path->stretch() : motion::PathStretch(program.path);
   return check_memory(job,
                       memory_factors(job, program.text(), program.moves_in_part(), path,
                                      {stock.min_mm, stock.max_mm, band}, work.within),
@@ -148,62 +148,13 @@ double envelope_step_mm(const Job& job, const machine::Tool& tool) {
   return lag_per_mm > 0 ? std::min(step, kMaxLag_rad / lag_per_mm) : step;
 }
 
-SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmodel::SampleSink& samples,
-                                 Diagnostics& diagnostics) {
-  SimulatedProgram out = read_moves(std::move(source), job, diagnostics);
-  time_path(out, job, samples);
-  return out;
-}
-
-SimulatedProgram read_moves(SourceText source, const Job& job, Diagnostics& diagnostics) {
-  SimulatedProgram out{
-      kinematics::open_program(std::move(source), job.machine, kinematics::reading_of(job), diagnostics)};
-  diagnostics.throw_if_errors();
-  kinematics::check_on_part(out, diagnostics);
-  const machine::Operations operations = as_lines(job.operations, out.text(), out.moves_in_part());
-  out.selected = removal::selected_moves(out.moves_in_part(), operations);
-  out.holes = removal::hole_moves(out.moves_in_part(), operations, job.tools);
-  for (std::size_t i = 0; i < out.holes.size(); ++i)
-    if (out.holes[i] != removal::HoleMove::none) out.selected[i] = false;
-  check_cutting(job, out.text(), out.moves_in_part(), out.selected, out.holes, diagnostics);
-  diagnostics.throw_if_errors();
-  return out;
-}
-
-void time_path(SimulatedProgram& program, const Job& job, const feedmodel::SampleSink& samples,
-               const removal::StampSink& stamps) {
-  removal::StampBuilder builder(program.moves_in_part(), job.tools, program.selected, program.holes,
-                                program.part_path(), stamps);
-  const auto take = [&](const auto& run, std::span<const feedmodel::TimedSample> timed) {
-    builder.add(run);
-    if (samples) samples(timed);
-  };
-  program.feed = program.turns()
-                     ? feedmodel::predict_on_part(program.moves_of_axes(), job.machine,
-                                                  [&](const feedmodel::PartSamples& run) { take(run, run.samples()); })
-                     : feedmodel::predict_feed(program.moves_in_part(), job.machine,
-                                               [&](std::span<const feedmodel::TimedSample> run) { take(run, run); });
-  program.path = builder.take();
-}
-
-Motion motion_at(const SimulatedProgram& program, const Job& job, std::span<const feedmodel::TimedSample> samples) {
-  removal::StampBuilder builder(program.moves_in_part(), job.tools, program.selected, program.holes);
-  builder.add(samples);
-  return {builder.take(), {0, 0, program.feed.blocks}};
-}
-
-void exchange(SimulatedProgram& program, Motion& motion) {
-  std::swap(program.path, motion.path);
-  std::swap(program.feed, motion.feed);
-}
-
 namespace {
 
 /// Curves between the ends of moves, and tools that lie on their side.
-void add_turned(const Job& job, const SimulatedProgram& program, Places& places) {
+void add_turned(const Job& job, const SimulatedProgram& program, checks::Places& places) {
   for (const removal::Stamp& stamp : program.path.stamps) places.tip.add(stamp.pose.tip_mm);
   if (removal::all_upright(program.path.stamps)) return;
-  for (const int tool : cutting_tools(program.moves_in_part(), program.selected, program.holes))
+  for (const int tool : checks::cutting_tools(program.moves_in_part(), program.selected, program.holes))
     places.radius_mm = std::max(places.radius_mm, job.tools.at(tool).overhang_mm);
 }
 
@@ -214,9 +165,9 @@ MemoryEstimate check_memory_of(const Job& job, const SimulatedProgram& program, 
   return check_memory_of(job, program, stock, band_of(job, program, 0, {}), {}, diagnostics);
 }
 
-Places places_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock) {
-  Places out{tip_extents(program.moves_in_part(), program.selected, program.holes), 0, stock};
-  for (const int tool : cutting_tools(program.moves_in_part(), program.selected, program.holes))
+checks::Places places_of(const Job& job, const SimulatedProgram& program, const machine::Box& stock) {
+  checks::Places out{checks::tip_extents(program.moves_in_part(), program.selected, program.holes), 0, stock};
+  for (const int tool : checks::cutting_tools(program.moves_in_part(), program.selected, program.holes))
     out.radius_mm = std::max(out.radius_mm, job.tools.at(tool).diameter_mm / 2);
   if (program.turns()) add_turned(job, program, out);
   return out;
@@ -242,7 +193,7 @@ NominalCutters cutters_of(const Job& job, const removal::StampPath& nominal) {
 }
 
 /// The stamps that a path has kept, in order. Returns its runs.
-std::vector<removal::ToolRun> take_kept(const ThinPath& path, const removal::TakeNominal& take) {
+std::vector<removal::ToolRun> take_kept(const motion::SparsePath& path, const removal::TakeNominal& take) {
   auto run = path.outline.runs.begin();
   for (const ListRange& range : path.stamps.kept())
     for (std::size_t k = range.from; k < range.end; ++k) {
@@ -317,10 +268,10 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
   MemoryEstimate memory;
   removal::Stock blank = raw_stock(job, target, min_chip_mm, memory, diagnostics, work);
   blank.share();
-  Places places = places_of(job, target, {blank.min_mm(), blank.max_mm()});
+  checks::Places places = places_of(job, target, {blank.min_mm(), blank.max_mm()});
   if (!removal::all_upright(target.path.stamps))  // a tilted tool reaches down past its tip
     places.tip.add(places.tip.min_mm - Vec3(0, 0, places.radius_mm));
-  check_places(target.text().source.name(), places, diagnostics);
+  checks::check_places(target.text().source.name(), places, diagnostics);
   diagnostics.throw_if_errors();
   std::optional<removal::Stock> whole;
   if (job.stock.allowance_mm > 0) {
@@ -328,7 +279,7 @@ Blank make_blank(const Job& job, const SimulatedProgram& target, Diagnostics& di
     const double removed_mm3 =
         work.allowance ? work.allowance(blank)
                        : sweep_path(blank, job, target.path, job.stock.allowance_mm, "cutting up to the allowance");
-    if (removed_mm3 < nothing_mm3(job)) report_allowance(job, diagnostics);
+    if (removed_mm3 < nothing_mm3(job)) checks::report_allowance(job, diagnostics);
     diagnostics.throw_if_errors();
     blank.clear_stamps();
     blank.share();
@@ -352,7 +303,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
 
 Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& diagnostics, const TargetWork& work) {
   auto [blank, whole, memory] = make_blank(job, target, diagnostics, 0, work);
-  const Places where = places_of(job, target, {blank.min_mm(), blank.max_mm()});
+  const checks::Places where = places_of(job, target, {blank.min_mm(), blank.max_mm()});
   removal::Stock surface(blank);
   NominalCutters cutters;
   double removed_mm3 = 0;
@@ -365,12 +316,12 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
     removed_mm3 = work.surface ? work.surface(surface) : sweep_path(surface, job, nominal, 0, "cutting as the target");
     cutters = cutters_of(job, nominal);
   }
-  if (removed_mm3 < nothing_mm3(job)) report_nothing_removed(target.text().source.name(), where, diagnostics);
+  if (removed_mm3 < nothing_mm3(job)) checks::report_nothing_removed(target.text().source.name(), where, diagnostics);
   diagnostics.throw_if_errors();
   std::optional<removal::PartMesh> part;
   if (!job.part.mesh.empty() && work.judged) {
     part.emplace(job.part.mesh);
-    check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
+    checks::check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
   }
   Target out{std::move(blank), std::move(surface),
@@ -490,7 +441,7 @@ void add_piece(const removal::ToolRun& run, CutResult piece, PathLoads& out) {
   if (!piece.turn.teeth.empty()) out.cut.turn = std::move(piece.turn);
 }
 
-CutResult cut_piece(removal::Stock& stock, const Job& job, const PathStretch& path, const PieceCut& piece) {
+CutResult cut_piece(removal::Stock& stock, const Job& job, const motion::PathStretch& path, const PieceCut& piece) {
   const removal::ToolRun& run = path.runs[piece.run];
   const machine::Tool& tool = job.tools.at(run.tool);
   const std::span<const removal::Stamp> stamps = path.stamps_of(run);

@@ -26,16 +26,6 @@ inline constexpr double kBetween = 0.99;
 void mark_region(const machine::Job& job, const SimulatedProgram& program,
                  std::span<const removal::SurfacePoint> points, Target& target);
 
-/// Warning [starts-in-material] at the first move that is milled, where it goes on from a feed move that the job leaves
-/// out and its cutter stands in the blank there by more than a voxel: the material within the cutter is removed without
-/// chips.
-void check_region_start(const machine::Job& job, const SimulatedProgram& program, const removal::Stock& blank,
-                        Diagnostics& diagnostics);
-/// The same, where it is known whether the cutter stands in material there.
-void check_region_start(const machine::Job& job, const SimulatedProgram& program,
-                        const std::function<bool(const machine::Tool&, const ToolPose&)>& stands_in,
-                        Diagnostics& diagnostics);
-
 /// Leaves the points of a map out that are not of the region; `surface` is in the map's order.
 void drop_left_out(const SurfaceRegion& region, std::vector<removal::SurfacePoint>& surface);
 

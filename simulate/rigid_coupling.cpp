@@ -77,7 +77,7 @@ class RigidCoupling : public Coupling {
 
   double commit() override { return engager_ ? engager_->commit() : 0; }
 
-  void cut(const Stretch& stretch, const BendBefore&, CutResult& result) override {
+  void cut(const CutStretch& stretch, const BendBefore&, CutResult& result) override {
     const std::span<const Stamp> all = stretch.all;
     const std::size_t from = stretch.from;
     DeflectionTable& deflections = stretch.deflections;

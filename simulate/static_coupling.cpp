@@ -24,7 +24,7 @@ class StaticCoupling : public Coupling {
 
   double commit() override { return static_cut_ ? static_cut_->commit() : 0; }
 
-  void cut(const Stretch& stretch, const BendBefore& before, CutResult& result) override {
+  void cut(const CutStretch& stretch, const BendBefore& before, CutResult& result) override {
     const std::span<const Stamp> all = stretch.all;
     const std::size_t from = stretch.from;
     DeflectionTable& deflections = stretch.deflections;

@@ -17,7 +17,7 @@ struct TracedRun {
   double off_path_p95_mm = 0;  ///< distance of the axes from the programmed path in the cut
   double off_path_max_mm = 0;
   std::vector<feedmodel::TimedSample> samples;  ///< the trace's, on the program's moves
-  Motion model;                                 ///< the feed model's
+  motion::Motion model;                         ///< the feed model's
   Prediction predicted;                 ///< of the feed model: the same points of the surface, in the same order
   removal::ErrorFigures difference_um;  ///< error at the measured positions minus the feed model's
 };

@@ -1,4 +1,4 @@
-#include "simulate/wall_thickness.h"
+#include "simulate/part_survey.h"
 
 #include <algorithm>
 #include <cmath>

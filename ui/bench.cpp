@@ -8,7 +8,6 @@
 #include "base/output_file.h"
 #include "camber/presets.h"
 #include "camber/run.h"
-#include "ui/difference.h"
 
 namespace camber::ui {
 namespace {
@@ -270,7 +269,7 @@ json Bench::run(const std::string& job, const std::string& command, const Option
 
 json Bench::runs() const {
   json out = json::array();
-  for (const Run& run : runs_.all()) out.push_back(json_of(run, false));
+  for (const CommandRun& run : runs_.all()) out.push_back(json_of(run, false));
   return out;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 // What the page asks for, without HTTP: each function answers one request with JSON.
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -64,5 +67,17 @@ class Bench {
   std::mutex saving_;  ///< one edit after the other
   Runs runs_;
 };
+
+// Two programs line by line: which lines of the one stand in place of which lines of the other.
+
+/// `before_lines` lines from `before` on are replaced by `after_lines` lines from `after` on; from 0.
+struct Hunk {
+  std::size_t before = 0, before_lines = 0, after = 0, after_lines = 0;
+  bool operator==(const Hunk&) const = default;
+};
+
+/// The hunks that differ, in order; between hunks the texts are equal, line for line. Lines that both programs have
+/// once, in the same order, anchor the comparison (patience diff); time and memory grow with the number of lines.
+std::vector<Hunk> difference(std::string_view before, std::string_view after);
 
 }  // namespace camber::ui

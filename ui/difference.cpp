@@ -1,4 +1,4 @@
-#include "ui/difference.h"
+#include "ui/bench.h"
 
 #include <algorithm>
 #include <unordered_map>

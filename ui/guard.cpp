@@ -1,4 +1,4 @@
-#include "ui/guard.h"
+#include "ui/server.h"
 
 #include <algorithm>
 #include <array>
@@ -32,16 +32,16 @@ bool is_own_origin(std::string_view origin, std::string_view address) {
   return origin.starts_with(kScheme) && is_own_host(origin.substr(kScheme.size()), address);
 }
 
-std::optional<Refusal> refused_body(const Guard& guard, const Asked& asked) {
+std::optional<RequestRefusal> refused_body(const RequestGuard& guard, const Asked& asked) {
   if (!asked.has_body) return std::nullopt;
-  if (asked.lengths.size() != 1) return Refusal{411, "a Content-Length was expected"};
+  if (asked.lengths.size() != 1) return RequestRefusal{411, "a Content-Length was expected"};
   const std::string& text = asked.lengths.front();
   std::uint64_t bytes = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
   if (text.empty() || end != text.data() + text.size() || error == std::errc::invalid_argument)
-    return Refusal{400, "Content-Length is not a number of bytes"};
+    return RequestRefusal{400, "Content-Length is not a number of bytes"};
   if (error == std::errc() && bytes <= guard.max_upload_bytes) return std::nullopt;
-  return Refusal{413, fmt::format("{} bytes; at most {} are taken", text, guard.max_upload_bytes)};
+  return RequestRefusal{413, fmt::format("{} bytes; at most {} are taken", text, guard.max_upload_bytes)};
 }
 
 }  // namespace
@@ -71,13 +71,13 @@ bool same_secret(std::string_view a, std::string_view b) {
   return different == 0;
 }
 
-std::optional<Refusal> refusal(const Guard& guard, const Asked& asked) {
+std::optional<RequestRefusal> refusal(const RequestGuard& guard, const Asked& asked) {
   if (asked.hosts.size() != 1 || !is_own_host(asked.hosts.front(), guard.address))
-    return Refusal{403, "this host is not served"};
+    return RequestRefusal{403, "this host is not served"};
   for (const std::string& origin : asked.origins)
-    if (!is_own_origin(origin, guard.address)) return Refusal{403, "a page of another site asks"};
+    if (!is_own_origin(origin, guard.address)) return RequestRefusal{403, "a page of another site asks"};
   if (!same_secret(asked.token, guard.token) && !same_secret(cookie(asked.cookies, guard.cookie_name), guard.token))
-    return Refusal{403, "the token is missing: open the address that camber ui has printed"};
+    return RequestRefusal{403, "the token is missing: open the address that camber ui has printed"};
   return refused_body(guard, asked);
 }
 

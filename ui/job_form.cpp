@@ -1,4 +1,4 @@
-#include "ui/job_form.h"
+#include "ui/folder.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,5 +1,5 @@
 // The page, its script and its style, taken in by the assembler as they stand.
-#include "ui/page_bundle.h"
+#include "ui/server.h"
 
 #include "base/embedded_file.h"
 

@@ -1,4 +1,4 @@
-#include "ui/process.h"
+#include "ui/runs.h"
 
 #include <cerrno>
 #include <csignal>

@@ -40,7 +40,7 @@ std::string crash_text(int signal) {
 
 std::string_view name_of(RunState state) { return kStates[static_cast<std::size_t>(state)]; }
 
-json json_of(const Run& run, bool with_messages) {
+json json_of(const CommandRun& run, bool with_messages) {
   json out{{"id", run.id},
            {"job", run.job},
            {"command", run.name},
@@ -62,7 +62,7 @@ json json_of(const Run& run, bool with_messages) {
   return out;
 }
 
-void take_event(std::string_view line, json& messages, Run* progress) {
+void take_event(std::string_view line, json& messages, CommandRun* progress) {
   if (line.empty()) return;
   json event = json::parse(line, nullptr, false);
   if (!event.is_object() || !event.contains("event")) event = error(std::string(line));
@@ -106,10 +106,10 @@ int Runs::add(std::string job, std::string name, Command command) {
     const std::lock_guard lock(mutex_);
     id = ++last_id_;
     if (runs_.size() >= kMaxRuns)
-      if (const auto old = std::ranges::find_if(runs_, [](const Run& r) { return is_over(r.state); });
+      if (const auto old = std::ranges::find_if(runs_, [](const CommandRun& r) { return is_over(r.state); });
           old != runs_.end())
         runs_.erase(old);
-    Run run;
+    CommandRun run;
     run.id = id, run.job = std::move(job), run.name = std::move(name), run.command = std::move(command);
     runs_.push_back(std::move(run));
   }
@@ -122,7 +122,7 @@ bool Runs::cancel(int id) {
   bool found = false;
   {
     const std::lock_guard lock(mutex_);
-    const auto run = std::ranges::find(runs_, id, &Run::id);
+    const auto run = std::ranges::find(runs_, id, &CommandRun::id);
     if (run == runs_.end() || is_over(run->state)) return false;
     found = true;
     if (run->state == RunState::queued)
@@ -134,21 +134,21 @@ bool Runs::cancel(int id) {
   return found;
 }
 
-std::vector<Run> Runs::all() const {
+std::vector<CommandRun> Runs::all() const {
   const std::lock_guard lock(mutex_);
   return runs_;
 }
 
-std::optional<Run> Runs::find(int id) const {
+std::optional<CommandRun> Runs::find(int id) const {
   const std::lock_guard lock(mutex_);
-  const auto run = std::ranges::find(runs_, id, &Run::id);
+  const auto run = std::ranges::find(runs_, id, &CommandRun::id);
   return run == runs_.end() ? std::nullopt : std::optional(*run);
 }
 
-void Runs::update(int id, const std::function<void(Run&)>& change) {
+void Runs::update(int id, const std::function<void(CommandRun&)>& change) {
   {
     const std::lock_guard lock(mutex_);
-    const auto run = std::ranges::find(runs_, id, &Run::id);
+    const auto run = std::ranges::find(runs_, id, &CommandRun::id);
     if (run != runs_.end()) change(*run);
   }
   changed_();
@@ -159,7 +159,7 @@ void Runs::work() {
     int next = 0;
     {
       std::unique_lock lock(mutex_);
-      const auto waiting = [&] { return std::ranges::find(runs_, RunState::queued, &Run::state); };
+      const auto waiting = [&] { return std::ranges::find(runs_, RunState::queued, &CommandRun::state); };
       wake_.wait(lock, [&] { return stop_ || waiting() != runs_.end(); });
       if (stop_) return;
       next = waiting()->id;
@@ -169,20 +169,20 @@ void Runs::work() {
 }
 
 void Runs::execute(int id) {
-  const std::optional<Run> run = find(id);
+  const std::optional<CommandRun> run = find(id);
   if (!run) return;
   try {
     folder_.make_folder(results_of(run->job, run->name));
     {
       const std::lock_guard lock(mutex_);
-      const auto at = std::ranges::find(runs_, id, &Run::id);
+      const auto at = std::ranges::find(runs_, id, &CommandRun::id);
       if (stop_ || at == runs_.end() || at->state != RunState::queued) return;
       process_ = std::make_unique<Process>(command_line(executable_, run->command), folder_.path());
       at->state = RunState::running, at->begun = std::time(nullptr), at->pid = process_->pid();
     }
     changed_();
-    const Ended ended =
-        process_->wait([&](std::string_view line) { update(id, [&](Run& r) { take_event(line, r.messages, &r); }); });
+    const Ended ended = process_->wait(
+        [&](std::string_view line) { update(id, [&](CommandRun& r) { take_event(line, r.messages, &r); }); });
     finish(id, ended);
   } catch (const Refused& refused) {
     fail(id, refused.why);
@@ -195,7 +195,7 @@ void Runs::execute(int id) {
 
 /// Before it has begun.
 void Runs::fail(int id, const std::string& why) {
-  update(id, [&](Run& r) {
+  update(id, [&](CommandRun& r) {
     r.state = RunState::failed;
     r.begun = r.ended = std::time(nullptr);
     r.messages.push_back(error(why));
@@ -204,7 +204,7 @@ void Runs::fail(int id, const std::string& why) {
 
 /// The record of the run stays beside its results: the server may be another one tomorrow.
 void Runs::finish(int id, const Ended& ended) {
-  update(id, [&](Run& r) {
+  update(id, [&](CommandRun& r) {
     r.state = state_of(ended);
     r.status = ended.status, r.signal = ended.signal;
     r.ended = std::time(nullptr);
@@ -212,12 +212,12 @@ void Runs::finish(int id, const Ended& ended) {
     r.share.reset(), r.left_s.reset();
     if (r.state == RunState::crashed) r.messages.push_back(error(crash_text(ended.signal)));
   });
-  const std::optional<Run> run = find(id);
+  const std::optional<CommandRun> run = find(id);
   if (!run || run->state == RunState::cancelled) return;
   try {
     folder_.write(results_of(run->job, run->name) + "/run.json", json_of(*run, true).dump(2) + "\n");
   } catch (const InputError& problem) {
-    update(id, [&](Run& r) { r.messages.push_back(error(problem.what())); });
+    update(id, [&](CommandRun& r) { r.messages.push_back(error(problem.what())); });
   }
 }
 

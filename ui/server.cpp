@@ -18,8 +18,6 @@
 #include "base/diagnostics.h"
 #include "base/output_file.h"
 #include "ui/bench.h"
-#include "ui/guard.h"
-#include "ui/page_bundle.h"
 
 namespace camber::ui {
 namespace {
@@ -348,7 +346,7 @@ class Server {
 
   const Folder folder_;
   const std::string executable_;
-  Guard guard_;
+  RequestGuard guard_;
   std::mutex mutex_;  ///< of new folders
   Changes changes_;
   Bench bench_;

@@ -1,4 +1,4 @@
-#include "workpiece/solid.h"
+#include "workpiece/elastic.h"
 
 #include <algorithm>
 #include <cmath>

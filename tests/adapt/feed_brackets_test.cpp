@@ -1,4 +1,4 @@
-#include "adapt/feed_brackets.h"
+#include "adapt/feed_chooser.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "adapt/feed_plan.h"
+#include "adapt/feed_chooser.h"
 
 #include <limits>
 

@@ -362,8 +362,8 @@ TEST(Compensate, TheFiguresAreOfTheEmittedProgram) {
   machine::Job verify = job;
   verify.program = folder.write("emitted.nc", c.emitted.text);
   verify.part.program = job.program;
-  const auto emitted = simulate::simulate_motion(SourceText::read(verify.program), verify, {}, diagnostics);
-  const auto given = simulate::simulate_motion(SourceText::read(job.program), verify, {}, diagnostics);
+  const auto emitted = motion::simulate_motion(SourceText::read(verify.program), verify, {}, diagnostics);
+  const auto given = motion::simulate_motion(SourceText::read(job.program), verify, {}, diagnostics);
   const auto target = simulate::make_target(verify, given, diagnostics);
   const auto fresh = simulate::predict(verify, target, emitted, {});
   // Every move is compensated here, so that everything is in reach.

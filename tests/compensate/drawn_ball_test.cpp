@@ -134,7 +134,7 @@ TEST(DrawnJudge, FindsWhatAShiftCanCorrectGoneFromASlopeOfBallRows) {
   const machine::Job job = slope_job(folder, diagnostics);
   const CompensationResult c = compensate(job, diagnostics, {});
   const auto program = [&](const std::string& text) {
-    return simulate::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
+    return motion::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
   };
   std::cout << fmt::format("camber: rms {:.2f} to {:.2f}, correctable {:.2f} to {:.3f} um\n", c.figures.before_um.rms,
                            c.figures.after_um.rms, c.figures.split_before.correctable_um,

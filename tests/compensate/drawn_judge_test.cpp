@@ -89,7 +89,7 @@ TEST(DrawnJudgeSlow, FindsWhatAShiftCanCorrectGoneFromTheWallOfSample06) {
   job.machine.control.least_increment_mm = 1e-5;  // the correction is judged, not the 0.5 um that three decimals cost
   const CompensationResult c = compensate(job, diagnostics, {});
   const auto program = [&](const std::string& text) {
-    return simulate::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
+    return motion::simulate_motion(SourceText(job.program, text), job, {}, diagnostics);
   };
   const auto given = program(SourceText::read(job.program).text()), emitted = program(c.emitted.text);
   const Judged before = judge(job, given, given), after = judge(job, emitted, given);

@@ -75,7 +75,7 @@ TEST(DrawnJudgeStaticSlow, FindsTheWallOfSample06StraightAfterASlowSecondCut) {
   const CompensationResult c = compensate(job, diagnostics, options);
   const FinishedWall wall = wall_of(job);
   job.operations = {};
-  const auto emitted = simulate::simulate_motion(SourceText(job.program, c.emitted.text), job, {}, diagnostics);
+  const auto emitted = motion::simulate_motion(SourceText(job.program, c.emitted.text), job, {}, diagnostics);
   const std::vector<WallPass> passes = passes_of(emitted);
   ASSERT_EQ(passes.size(), 2u);
   testing::WallJudgeSteps steps;

@@ -1,7 +1,6 @@
 // Regions of several boxes, each with its own levels.
 #include <gtest/gtest.h>
 
-#include "copymill/level_region.h"
 #include "copymill/levels.h"
 #include "tests/copymill/small_copy.h"
 #include "tests/support/block_part.h"

@@ -80,8 +80,7 @@ TEST(Copy, FinishesWallsAndFloorToThePart) {
 /// Stock cut along the program's own moves, without servo lag.
 removal::Stock cut_by_program(const machine::Job& job, const std::string& text) {
   Diagnostics diagnostics;
-  const simulate::SimulatedProgram program =
-      simulate::simulate_motion(SourceText("out.nc", text), job, {}, diagnostics);
+  const simulate::SimulatedProgram program = motion::simulate_motion(SourceText("out.nc", text), job, {}, diagnostics);
   removal::Stock stock = simulate::job_stock(job, 4, [](const Vec3&, const Vec3&) {});
   simulate::sweep_path(stock, job, removal::nominal_path(program.moves_in_part(), program.selected, program.path), 0);
   return stock;

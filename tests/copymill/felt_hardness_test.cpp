@@ -1,4 +1,4 @@
-#include "copymill/load_rule.h"
+#include "copymill/load_follower.h"
 
 #include <gtest/gtest.h>
 

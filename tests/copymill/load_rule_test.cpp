@@ -1,5 +1,5 @@
 // The rule by which feed and depths follow the load: alone, and on cuts whose force it does not know beforehand.
-#include "copymill/load_rule.h"
+#include "copymill/load_follower.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "copymill/feed_motion.h"
+#include "copymill/runner.h"
 #include "simulate/load_probe.h"
 #include "tests/support/cutting.h"
 

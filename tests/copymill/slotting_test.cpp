@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "copymill/copy_milling.h"
-#include "copymill/trochoid.h"
+#include "copymill/slotting.h"
 #include "tests/copymill/small_copy.h"
 #include "tests/support/height_map_judge.h"
 

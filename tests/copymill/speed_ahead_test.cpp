@@ -1,5 +1,5 @@
 // Speeds tick by tick: limits ahead are kept, and a stop at any tick is within the acceleration.
-#include "copymill/feed_motion.h"
+#include "copymill/runner.h"
 
 #include <algorithm>
 #include <cmath>

@@ -24,7 +24,7 @@
 #include "compensate/uncertainty.h"
 #include "compensate/verify.h"
 #include "distribute/section_parts.h"
-#include "dynamics/frequency_response.h"
+#include "dynamics/fit_modes.h"
 #include "machine/copy_operations.h"
 #include "machine/cycle_cases.h"
 #include "machine/force_log.h"

@@ -8,8 +8,6 @@
 #include <functional>
 #include <random>
 
-#include "inspect/minimax.h"
-
 namespace camber::inspect {
 namespace {
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/plan_table.h"
 #include "plan/programs.h"
 #include "tests/support/random_part.h"
 #include "tests/support/temp_folder.h"

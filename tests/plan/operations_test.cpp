@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/plan_table.h"
+#include "plan/programs.h"
 #include "plan/setup_plan.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/primitives.h"
+#include "plan/order.h"
 #include "tests/support/block_part.h"
 
 namespace camber::plan {

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "plan/order.h"
-#include "plan/primitives.h"
 #include "plan/removal_volume.h"
 
 namespace camber::plan {

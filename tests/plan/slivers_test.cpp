@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/layered_solid.h"
 #include "plan/order.h"
-#include "plan/room.h"
+#include "plan/part_of_stock.h"
 #include "tests/support/block_part.h"
 
 namespace camber::plan {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "plan/layered_solid.h"
 #include "plan/order.h"
 
 namespace camber::plan {

@@ -1,5 +1,5 @@
 // What axes that follow late leave on the surface, against closed forms and against the machine moved back by its lag.
-#include "posture/lag_error.h"
+#include "posture/choose.h"
 
 #include <cmath>
 #include <random>

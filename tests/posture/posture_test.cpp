@@ -10,14 +10,13 @@
 #include <Eigen/Geometry>
 
 #include "base/units.h"
+#include "checks/tool_surface.h"
 #include "kinematics/control_options.h"
 #include "kinematics/machine_program.h"
 #include "kinematics/program_joints.h"
 #include "nc/interpreter.h"
-#include "posture/stock_obstacle.h"
 #include "removal/cutter.h"
 #include "repath/drop_cutter.h"
-#include "simulate/tool_surface.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
 
@@ -147,7 +146,7 @@ TEST(PathPoint, KeepsTheContactOfBallAndBullNose) {
       Vec3 axis = p.normal + 0.6 * Vec3(one(random), one(random), one(random));
       axis.normalize();
       if (axis.cross(p.normal).norm() < 0.05) continue;
-      const Mat3 frame = simulate::outline_frame({p.tip_mm(axis), axis, 0});
+      const Mat3 frame = checks::outline_frame({p.tip_mm(axis), axis, 0});
       const Vec3 there = frame.transpose() * (contact - p.tip_mm(axis));
       EXPECT_NEAR(shape.distance_mm(there), 0, 1e-9) << corner;
       EXPECT_GT((frame * shape.gradient(there)).dot(-p.normal), 1 - 1e-9) << corner;
@@ -328,7 +327,7 @@ TEST_F(PostureInATrough, WhatEarlierToolsCutIsNoObstacle) {
     diagnostics.throw_if_errors();
     around.finish();
     // A pin of 2 mm that goes up from the tip.
-    simulate::TurnedSolid pin(simulate::OutlineRing::Part::holder);
+    checks::TurnedSolid pin(checks::OutlineRing::Part::holder);
     pin.add(1, 0);
     pin.add(1, 50);
     ToolShape shape;

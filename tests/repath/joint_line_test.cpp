@@ -1,4 +1,4 @@
-#include "repath/joint_line.h"
+#include "repath/tip_motion.h"
 
 #include <algorithm>
 #include <random>

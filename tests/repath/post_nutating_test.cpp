@@ -7,9 +7,9 @@
 
 #include "base/units.h"
 #include "kinematics/travel_check.h"
+#include "repath/path_deviation.h"
 #include "repath/post.h"
-#include "repath/post_deviation.h"
-#include "repath/rotary_choice.h"
+#include "repath/post_plan.h"
 #include "tests/kinematics/machines.h"
 #include "tests/repath/five_axis_program.h"
 

@@ -10,7 +10,7 @@
 #include "base/units.h"
 #include "kinematics/feed_meaning.h"
 #include "kinematics/travel_check.h"
-#include "repath/post_deviation.h"
+#include "repath/path_deviation.h"
 #include "tests/kinematics/machines.h"
 #include "tests/repath/five_axis_program.h"
 #include "tests/support/temp_folder.h"

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "kinematics/control_options.h"
-#include "repath/raster_text.h"
 
 using namespace camber;
 using namespace camber::repath;

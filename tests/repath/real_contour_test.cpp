@@ -5,7 +5,7 @@
 
 #include "kinematics/control_options.h"
 #include "nc/program.h"
-#include "repath/contour.h"
+#include "repath/fastest.h"
 #include "test_paths.h"
 #include "tests/support/test_data.h"
 

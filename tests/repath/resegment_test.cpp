@@ -7,9 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "repath/contour.h"
 #include "repath/fastest.h"
-#include "repath/smooth_curve.h"
 #include "tests/support/path_distance.h"
 #include "tests/support/read_text.h"
 

@@ -1,5 +1,5 @@
 // Arcs in what is laid out again: short ones are taken in, good blocks stay.
-#include "repath/short_arcs.h"
+#include "repath/resegment.h"
 
 #include <cmath>
 #include <random>
@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "repath/contour.h"
 #include "repath/fastest.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/path_distance.h"

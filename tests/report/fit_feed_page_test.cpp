@@ -1,4 +1,4 @@
-#include "report/fit_feed_page.h"
+#include "report/fit_summary.h"
 
 #include <gtest/gtest.h>
 

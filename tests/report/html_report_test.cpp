@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/histogram_svg.h"
-#include "report/worst_lines.h"
+#include "report/page_tables.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::report {

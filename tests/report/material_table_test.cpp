@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "report/model_tables.h"
+#include "report/page_tables.h"
 #include "tests/support/law_material.h"
 
 namespace camber::report {

@@ -1,4 +1,4 @@
-#include "report/time_error_svg.h"
+#include "report/histogram_svg.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,6 @@
 #include "simulate/cut.h"
 #include "simulate/part_survey.h"
 #include "simulate/predict.h"
-#include "simulate/wall_thickness.h"
 #include "tests/support/accuracy_figure.h"
 #include "tests/support/cantilever_plate.h"
 #include "tests/support/cutting.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ui/difference.h"
+#include "ui/bench.h"
 
 namespace camber::ui {
 namespace {

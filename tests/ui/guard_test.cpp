@@ -1,12 +1,12 @@
 // Who the server answers, without a server.
 #include <gtest/gtest.h>
 
-#include "ui/guard.h"
+#include "ui/server.h"
 
 namespace camber::ui {
 namespace {
 
-const Guard kGuard{"0a1b", "camber_80", "192.0.2.7", 1000};
+const RequestGuard kGuard{"0a1b", "camber_80", "192.0.2.7", 1000};
 
 Asked asked() { return {{"127.0.0.1:80"}, {}, "0a1b", "", false, {}}; }
 int status_of(const Asked& request) {
@@ -14,7 +14,7 @@ int status_of(const Asked& request) {
   return refused ? refused->status : 200;
 }
 
-TEST(Guard, LetsInWhoHasTheTokenInTheAddressOrTheCookie) {
+TEST(RequestGuard, LetsInWhoHasTheTokenInTheAddressOrTheCookie) {
   Asked request = asked();
   EXPECT_EQ(status_of(request), 200);
   request.token.clear();
@@ -28,7 +28,7 @@ TEST(Guard, LetsInWhoHasTheTokenInTheAddressOrTheCookie) {
   }
 }
 
-TEST(Guard, KnowsItsHostsWithAnyPort) {
+TEST(RequestGuard, KnowsItsHostsWithAnyPort) {
   for (const char* own : {"localhost", "LOCALHOST:9", "127.0.0.1:65535", "[::1]", "[::1]:8080", "192.0.2.7:1"})
     EXPECT_TRUE(is_own_host(own, "192.0.2.7")) << own;
   for (const char* other : {"", ":80", "evil.example", "127.0.0.1.evil.example", "localhost.evil.example:80",
@@ -37,7 +37,7 @@ TEST(Guard, KnowsItsHostsWithAnyPort) {
   EXPECT_TRUE(is_own_host("[fe80::2]:80", "fe80::2"));
 }
 
-TEST(Guard, RefusesOtherHostsAndTwoOfThem) {
+TEST(RequestGuard, RefusesOtherHostsAndTwoOfThem) {
   Asked request = asked();
   for (const std::vector<std::string>& hosts :
        {std::vector<std::string>{}, {"evil.example"}, {"127.0.0.1", "evil.example"}, {"127.0.0.1", "127.0.0.1"}}) {
@@ -46,7 +46,7 @@ TEST(Guard, RefusesOtherHostsAndTwoOfThem) {
   }
 }
 
-TEST(Guard, RefusesPagesOfOtherSites) {
+TEST(RequestGuard, RefusesPagesOfOtherSites) {
   Asked request = asked();
   for (const char* own : {"http://127.0.0.1:80", "http://localhost:5", "http://[::1]:80", "http://192.0.2.7"}) {
     request.origins = {own};
@@ -61,7 +61,7 @@ TEST(Guard, RefusesPagesOfOtherSites) {
   EXPECT_EQ(status_of(request), 403);
 }
 
-TEST(Guard, TakesBodiesThatSayTheirLengthUpToTheLimit) {
+TEST(RequestGuard, TakesBodiesThatSayTheirLengthUpToTheLimit) {
   Asked request = asked();
   request.has_body = true;
   const auto with = [&](std::vector<std::string> lengths) {
@@ -77,14 +77,14 @@ TEST(Guard, TakesBodiesThatSayTheirLengthUpToTheLimit) {
   for (const char* text : {"", "-1", "1e2", "0x5", "5 "}) EXPECT_EQ(with({text}), 400) << text;
 }
 
-TEST(Guard, MakesLongTokensThatDiffer) {
+TEST(RequestGuard, MakesLongTokensThatDiffer) {
   const std::string one = new_token();
   EXPECT_EQ(one.size(), 64u);
   EXPECT_EQ(one.find_first_not_of("0123456789abcdef"), std::string::npos);
   EXPECT_NE(one, new_token());
 }
 
-TEST(Guard, ComparesSecretsAsAWhole) {
+TEST(RequestGuard, ComparesSecretsAsAWhole) {
   EXPECT_TRUE(same_secret("abc", "abc"));
   EXPECT_FALSE(same_secret("abc", "abd"));
   EXPECT_FALSE(same_secret("abc", "ab"));

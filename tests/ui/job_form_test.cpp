@@ -1,7 +1,7 @@
 // A job's text as a form, and edits of single lines.
 #include <gtest/gtest.h>
 
-#include "ui/job_form.h"
+#include "ui/folder.h"
 
 namespace camber::ui {
 namespace {

@@ -1,4 +1,4 @@
-#include "workpiece/hexahedron.h"
+#include "workpiece/elastic.h"
 
 #include <cmath>
 #include <functional>
