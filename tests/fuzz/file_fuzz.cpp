@@ -34,7 +34,7 @@
 #include "machine/tool_proposal.h"
 #include "plan/plan_input.h"
 #include "simulate/force_regions.h"
-#include "ui/job_form.h"
+#include "ui/folder.h"
 
 namespace {
 
