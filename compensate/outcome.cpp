@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/units.h"
 #include "compensate/fit_shift.h"
 #include "compensate/judge.h"
 #include "compensate/propose.h"
@@ -98,30 +97,6 @@ std::vector<ProgramLine> lines_of(const Version& version, const Trial& trial, st
     out[i] = {given(block), block + 1};
   }
   return out;
-}
-
-/// Returns, for each limit that the best round met, the value from which it would not bind.
-std::vector<BindingLimit> binding_limits(const Task& task, const State& state, const CompensationResult& out) {
-  const machine::CompensationSettings& asked = task.job.compensation;
-  const Version& version = *state.active;
-  const Round& best = out.rounds[out.best];
-  const double limit_um = task.given.depth_limit_um;
-  std::vector<BindingLimit> limits;
-  if (best.limited_points > 0) {
-    FitShiftOptions free = fit_options(task, version);
-    free.max_shift_mm = std::numeric_limits<double>::infinity();
-    ShiftPath path = version.path;
-    fit_shift(path, wanted_of(task, version, state.best.trial->observed, nullptr), free);
-    if (const double wanted = path.largest_shift_mm(); wanted > asked.max_shift_mm)
-      limits.push_back({kMaxShiftKey, asked.max_shift_mm, std::ceil(1000 * wanted) / 1000});
-  }
-  if (best.free_angle_growth_rad > asked.max_angle_growth_rad)
-    limits.push_back({kAngleGrowthKey, deg_from_rad(asked.max_angle_growth_rad),
-                      std::ceil(10 * deg_from_rad(best.free_angle_growth_rad)) / 10});
-  if (const Round& unguarded = out.rounds[state.free.round]; best.guard && unguarded.deepest_um > limit_um)
-    limits.push_back({asked.profile_um ? kProfileKey : kOvercutKey, limit_um, std::ceil(10 * unguarded.deepest_um) / 10,
-                      out.safety.own_depth_limit});
-  return limits;
 }
 
 Tried tried(const State& state, const CompensationResult& out) {
@@ -252,6 +227,8 @@ void add_header(const Task& task, const State& state, CompensationResult& out) {
   const std::size_t more = SourceText("", out.emitted.text).line_count() - out.emitted.blocks_after;
   for (CauseFigure& cause : out.verdict.causes)
     for (ProgramLine& line : cause.lines) line.emitted += more;
+  for (BindingLimit& limit : out.verdict.limits)
+    if (limit.line.emitted > 0) limit.line.emitted += more;
   if (out.safety.after.line.emitted > 0) out.safety.after.line.emitted += more;
 }
 
@@ -305,7 +282,7 @@ void conclude(const Task& task, State& state, bool better, CompensationResult& o
   verdict.better = better;
   verdict.within_tolerance = within_tolerance(figures.plain_after, task.job.compensation);
   verdict.stop = stop_of(state, out);
-  verdict.limits = binding_limits(task, state, out);
+  verdict.limits = binding_limits(task, state);
   if (!verdict.within_tolerance) verdict.causes = causes(task, state, out);
   if (task.options.max_stock_crossings > 0)
     out.surfaces.stock = removal::stock_shape(task.setup->target.surface, task.options.max_stock_crossings);

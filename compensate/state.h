@@ -76,8 +76,7 @@ struct Version {
   std::optional<RepeatedCuts> repeated{};
   ShiftPath path;
   Sensitivity sensitivity;
-  std::vector<double> stiffness;     ///< stiffness of the path, one per point
-  double free_angle_growth_rad = 0;  ///< largest, before the path was made stiffer there
+  std::vector<double> stiffness;  ///< stiffness of the path, one per point
   std::vector<RowLink> links;
   Splits splits;
   bool split_once = false;
@@ -101,6 +100,8 @@ struct BeforeGuard {
   double correctable_um = 0;
   std::size_t round = 0;
   std::shared_ptr<const Emitted> emitted;
+  std::size_t too_deep = 0;         ///< points of the surface below the depth limit
+  std::int32_t deepest_stamp = -1;  ///< that made the deepest of them
 };
 
 struct RoundFigures {
