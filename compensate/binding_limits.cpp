@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -65,26 +64,6 @@ Stretch stretch_about(const ShiftPath& path, std::size_t point) {
           end_within(kStretch_mm)};
 }
 
-/// The stamps of `path` that `keep` wants, as runs of consecutive ones.
-removal::StampPath part_of(const removal::StampPath& path, const std::function<bool(std::size_t)>& keep) {
-  removal::StampPath out;
-  for (const removal::ToolRun& run : path.runs) {
-    bool open = false;
-    for (std::size_t k = run.from; k < run.from + run.count; ++k) {
-      if (!keep(k)) {
-        open = false;
-        continue;
-      }
-      if (!open) out.runs.push_back({run.tool, out.stamps.size(), 0, run.kind});
-      out.stamps.push_back(path.stamps[k]);
-      out.stamps.back().first = out.stamps.back().first || !open;
-      ++out.runs.back().count;
-      open = true;
-    }
-  }
-  return out;
-}
-
 /// The first and the last stamp of a stretch, half open.
 std::pair<std::size_t, std::size_t> stamps_of(const Version& version, const Emitted& emitted, const Stretch& stretch) {
   const auto& stamps = emitted.program.path.stamps;
@@ -121,7 +100,7 @@ removal::Stock stock_before(const machine::Job& job, const simulate::Target& tar
            (tip.head(axes).array() <= high.head(axes).array()).all();
   };
   removal::Stock out(target.blank);
-  simulate::sweep_path(out, job, part_of(path, near), 0);
+  simulate::sweep_path(out, job, removal::stamps_where(path, near), 0);
   out.clear_stamps();
   out.share();
   return out;
@@ -143,7 +122,7 @@ std::optional<double> p95_of_stretch(const Task& task, const Version& version, c
                                 .region = whole.region,
                                 .map = whole.map};
   SimulatedProgram program = emitted.program;
-  program.path = part_of(emitted.program.path, [&](std::size_t k) { return k >= from && k < end; });
+  program.path = removal::stamps_where(emitted.program.path, [&](std::size_t k) { return k >= from && k < end; });
   simulate::PredictOptions options;
   options.contacts = false;
   const simulate::Prediction found = simulate::predict(job, target, program, options);

@@ -133,6 +133,11 @@ struct SecondCuts {
   std::string text{};       ///< the program whose path was shifted, where runs are cut twice; else empty
 };
 
+/// What the passes before leave for the moves to compensate (pass_before.h).
+struct PassBefore {
+  double given_mm = 0, left_mm = 0;  ///< medians of the surface, of the given and of the emitted program
+};
+
 /// Depth into the part.
 struct Safety {
   double depth_limit_um = 0;     ///< the job's, or default_depth_limit_um
@@ -175,6 +180,7 @@ struct CompensationResult {
   FormFigures figures;
   CompensationVerdict verdict;
   SecondCuts passes;
+  std::optional<PassBefore> pass_before{};  ///< not given: the passes before are as given
   Safety safety;
   PathFigures path;
   UncertaintyFigures uncertainty;

@@ -9,6 +9,7 @@
 #include "checks/plausibility.h"
 #include "compensate/hidden_rows.h"
 #include "compensate/judge.h"
+#include "compensate/pass_before.h"
 #include "compensate/passes.h"
 #include "compensate/propose.h"
 #include "nc/emit.h"
@@ -78,6 +79,17 @@ void check_levers(Task& task, const std::vector<bool>& selected) {
     check_passes(program, selected, diagnostics);
   }
   diagnostics.throw_if_errors();
+}
+
+void check_passes_before(const Task& task, const Version& given) {
+  if (!task.has(machine::Lever::allowance) || has_passes_before(task, given)) return;
+  task.diagnostics.add({Severity::error,
+                        {task.job.path, 0, 0},
+                        "levers names \"allowance\", but no pass before those to compensate cuts what they cut, or its "
+                        "moves cannot be shifted; levers without \"allowance\" were expected",
+                        "lever-unusable",
+                        {}});
+  task.diagnostics.throw_if_errors();
 }
 
 /// What the best shift of each place by itself leaves, one per point of the surface.
@@ -231,6 +243,7 @@ State measure_given(Task& task, CompensationResult& out) {
   task.given.depth_limit_um = depth_limit_um(task, version, *given);
   task.given.plain = figures_of(task, *given);
   task.given.time_s = task.setup->program.feed.time_s;
+  check_passes_before(task, version);
   record(task, state, {});
   look_out(task, state, out);
   out.figures.plain_before = task.given.plain;

@@ -9,6 +9,7 @@
 
 #include "compensate/fit_shift.h"
 #include "compensate/judge.h"
+#include "compensate/pass_before.h"
 #include "compensate/propose.h"
 #include "simulate/verdict.h"
 
@@ -99,8 +100,9 @@ std::vector<ProgramLine> lines_of(const Version& version, const Trial& trial, st
   return out;
 }
 
-Tried tried(const State& state, const CompensationResult& out) {
+Tried tried(const Task& task, const State& state, const CompensationResult& out) {
   Tried found;
+  found.pass_before = task.has(machine::Lever::allowance) || !has_passes_before(task, *state.versions.front());
   found.rounds = state.ended == Stop::stalled;
   for (const Round& round : out.rounds) {
     found.feeds = found.feeds || round.slowed > 0;
@@ -156,10 +158,11 @@ std::vector<CauseFigure> causes(const Task& task, const State& state, const Comp
   for (const removal::SurfacePoint& p : best.surface) stamps.push_back(p.machined_stamp);
   std::vector<CauseFigure> found =
       causes_of(out.rounds[out.best].split, points, best.observed, lines_of(version, best, stamps));
+  const Tried done = tried(task, state, out);
   for (CauseFigure& cause : found) {
     if (task.setup->target.contour_parts && cause.cause == Cause::short_range)
       cause.contour = contour_cause_of(cause.cause, points, best.surface);
-    cause.remedies = remedies_of(cause, tried(state, out));
+    cause.remedies = remedies_of(cause, done);
   }
   return found;
 }
@@ -262,6 +265,7 @@ void conclude(const Task& task, State& state, bool better, CompensationResult& o
   out.surfaces.after = best.surface;
   out.surfaces.loads_after = best.loads;
   out.passes = second_cuts(task, state);
+  if (version.repeated) out.pass_before = version.repeated->pass_before;
   if (best.emitted)
     warn_of_not_emitted(given.text(), given.moves_in_part(), in_given(version, best.emitted->emission.not_made),
                         task.diagnostics);

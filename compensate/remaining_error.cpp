@@ -249,6 +249,7 @@ std::vector<std::string> remedies_of(const CauseFigure& figure, const Tried& tri
       break;
     case Cause::bow:
       if (!tried.second_cuts) out.push_back("a second cut (lever \"passes\")");
+      if (!tried.pass_before) out.push_back("less stock left by the pass before (lever \"allowance\")");
       out.push_back("a shorter tool");
       lower_feed("a lower feed");
       break;

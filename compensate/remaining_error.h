@@ -66,6 +66,7 @@ std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<Po
 struct Tried {
   bool rounds = false;  ///< they ended before max_rounds: one more was not worth it
   bool feeds = false, second_cuts = false;
+  bool pass_before = true;  ///< false: there are passes before, and they were left as given
   std::vector<BindingLimit> limits{};
 };
 /// What may take a cause away and has not been tried.

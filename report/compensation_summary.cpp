@@ -204,6 +204,8 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["rounds"] = rounds(c);
   j["time_points"] = time_points(c);
   j["passes"] = passes_json(c);
+  if (c.pass_before)
+    j["pass_before"] = {{"given_um", 1000 * c.pass_before->given_mm}, {"left_um", 1000 * c.pass_before->left_mm}};
   j["best_round"] = c.best;
   j["stop"] = compensate::to_string(c.verdict.stop);
   j["into_part"] = {{"within_tolerance", c.safety.within_part},
@@ -320,6 +322,9 @@ std::string levers_text(const compensate::CompensationResult& c) {
       fmt::format("levers used: shift to {:.1f} um ({} blocks)", 1000 * c.path.max_shift_mm, c.emitted.blocks_changed);
   if (best.slowed > 0) out += fmt::format(", {} feed changes", best.slowed);
   if (best.repeated > 0) out += fmt::format(", {} runs cut twice", best.repeated);
+  if (c.pass_before)
+    out += fmt::format(", the passes before leave {:.0f} instead of {:.0f} um", 1000 * c.pass_before->left_mm,
+                       1000 * c.pass_before->given_mm);
   const double extra_s = c.figures.feed_after.time_s - c.figures.feed_before.time_s;
   const double percent = c.figures.feed_before.time_s > 0 ? 100 * extra_s / c.figures.feed_before.time_s : 0;
   out += fmt::format("; {:+.1f} s ({:+.1f} %)\n", extra_s, percent);

@@ -112,6 +112,8 @@ TEST(Causes, HaveNoRemedyThatWasTried) {
   };
   EXPECT_EQ(remedies(Cause::bow, {}), (Words{"a second cut (lever \"passes\")", "a shorter tool", "a lower feed"}));
   EXPECT_EQ(remedies(Cause::bow, {.feeds = true, .second_cuts = true}), Words{"a shorter tool"});
+  EXPECT_EQ(remedies(Cause::bow, {.feeds = true, .second_cuts = true, .pass_before = false}),
+            (Words{"less stock left by the pass before (lever \"allowance\")", "a shorter tool"}));
   EXPECT_EQ(remedies(Cause::correctable, {}), Words{"more rounds (max_rounds)"});
   EXPECT_EQ(remedies(Cause::correctable, {.rounds = true}), Words{});
   EXPECT_EQ(remedies(Cause::short_range, {.feeds = true}), Words{});
