@@ -113,7 +113,7 @@ ShiftPath shifted(const Task& task, const Version& given, const std::vector<bool
                   const removal::StampPath& before, std::span<const Left> left, double wanted_mm) {
   const SimulatedProgram& program = *given.source.program;
   ShiftPath path(program.moves_in_part(), moves, task.spacing_mm(), task.job.machine.control.block_time_s,
-                 turning_moves(program));
+                 kinematics::turning_moves(program));
   std::vector<Observation> asked;
   double most_mm = 0;
   for (const Left& l : left) {
