@@ -212,6 +212,20 @@ std::optional<BindingLimit> shift_limit(const Task& task, const State& state) {
   return out;
 }
 
+/// The least bound of angles between blocks that an emitted program keeps: corners have bounds of their own.
+double least_bound_rad(const Task& task, const Version& version, const Emitted& emitted) {
+  constexpr int kHalvings = 12;
+  double low = task.job.compensation.max_angle_growth_rad, high = std::max(low, emitted.quality.angle_growth_rad);
+  for (int i = 0; i < kHalvings; ++i) {
+    const double bound = (low + high) / 2;
+    const PathQuality quality =
+        path_quality(version.source.program->moves_in_part(), version.compensated, emitted.program.moves_in_part(),
+                     emitted.map, version.source.job.machine.control.block_time_s, bound);
+    (quality.over.empty() ? high : low) = bound;
+  }
+  return high;
+}
+
 std::optional<BindingLimit> angle_limit(const Task& task, const State& state) {
   const Version& version = *state.active;
   const double limit_rad = task.job.compensation.max_angle_growth_rad;
@@ -234,7 +248,7 @@ std::optional<BindingLimit> angle_limit(const Task& task, const State& state) {
   without.held.erase(std::ranges::unique(without.held).begin(), without.held.end());
   if (without.held.empty()) return std::nullopt;
   BindingLimit out{kAngleGrowthKey, deg_from_rad(limit_rad),
-                   ceil_to(deg_from_rad(std::max(quality.angle_growth_rad, turn.max_rad)), 0.1)};
+                   ceil_to(deg_from_rad(std::max(turn.max_rad, least_bound_rad(task, version, *without.emitted))), 0.1)};
   find_effect(task, state, without, out);
   return out;
 }
