@@ -60,9 +60,9 @@ FeedCells::FeedCells(const simulate::SimulatedProgram& program, const machine::M
     }
     const bool hole = program.holes[m] != removal::HoleMove::none || moves[m].canned;
     const Kept kept = hole || plunges(program, m) ? Kept::plunge
-                      : !program.selected[m]    ? Kept::unknown_load
-                      : fixed[m]                ? Kept::not_editable
-                                                : Kept::no;
+                      : !program.selected[m]      ? Kept::unknown_load
+                      : fixed[m]                  ? Kept::not_editable
+                                                  : Kept::no;
     const std::size_t first = cells_.size();
     add(program, m, length_mm[m], kept);
     if (cells_.size() == first) continue;

@@ -25,8 +25,8 @@ double ceil_to(double value, double step) { return std::ceil(value / step - 1e-9
 
 std::string place_text(const BindingLimit& limit) {
   const bool depth = limit.key == kOvercutKey || limit.key == kProfileKey;
-  std::string out = fmt::format("{} point{} of the {}", limit.count, limit.count == 1 ? "" : "s",
-                                depth ? "surface" : "path");
+  std::string out =
+      fmt::format("{} point{} of the {}", limit.count, limit.count == 1 ? "" : "s", depth ? "surface" : "path");
   if (limit.line.given == 0) return out;
   fmt::format_to(std::back_inserter(out), ", most in line {}", limit.line.given);
   if (limit.line.emitted > 0 && limit.line.emitted != limit.line.given)
@@ -47,8 +47,8 @@ struct Stretch {
 
 /// About a point of the path, within its chain.
 Stretch stretch_about(const ShiftPath& path, std::size_t point) {
-  const auto chain = std::ranges::find_if(
-      path.chains(), [&](const Chain& c) { return point >= c.from && point < c.from + c.count; });
+  const auto chain =
+      std::ranges::find_if(path.chains(), [&](const Chain& c) { return point >= c.from && point < c.from + c.count; });
   const auto& points = path.points();
   const auto first_within = [&](double mm) {
     std::size_t i = point;
@@ -106,7 +106,8 @@ removal::Stock stock_before(const machine::Job& job, const simulate::Target& tar
   return out;
 }
 
-/// 95th percentile of the judged error that an emitted program leaves of a stretch. Nothing where it cuts nothing there.
+/// 95th percentile of the judged error that an emitted program leaves of a stretch. Nothing where it cuts nothing
+/// there.
 std::optional<double> p95_of_stretch(const Task& task, const Version& version, const Emitted& emitted,
                                      const Stretch& stretch, const Trial& best) {
   const simulate::Target& whole = *version.source.target;
@@ -167,8 +168,8 @@ ShiftPath shifted_freely(const Task& task, const State& state, bool keep_stiffne
   const std::vector<double> stiffness =
       keep_stiffness ? thin.greatest_of(version.stiffness) : std::vector<double>(thin.path().points().size(), 1.0);
   const bool own_links = keep_stiffness && version.link_stiffness.size() == links.size();
-  FitShiftOptions options =
-      fit_options(task, stiffness, links, own_links ? std::span<const double>(version.link_stiffness) : std::span<const double>());
+  FitShiftOptions options = fit_options(
+      task, stiffness, links, own_links ? std::span<const double>(version.link_stiffness) : std::span<const double>());
   options.max_shift_mm = max_shift_mm;
   fit_shift(thin.path(), thin.places_of(wanted_of(task, version, state.best.trial->observed, nullptr)), options);
   thin.give_shifts(path);
@@ -247,8 +248,9 @@ std::optional<BindingLimit> angle_limit(const Task& task, const State& state) {
   std::ranges::sort(without.held);
   without.held.erase(std::ranges::unique(without.held).begin(), without.held.end());
   if (without.held.empty()) return std::nullopt;
-  BindingLimit out{kAngleGrowthKey, deg_from_rad(limit_rad),
-                   ceil_to(deg_from_rad(std::max(turn.max_rad, least_bound_rad(task, version, *without.emitted))), 0.1)};
+  BindingLimit out{
+      kAngleGrowthKey, deg_from_rad(limit_rad),
+      ceil_to(deg_from_rad(std::max(turn.max_rad, least_bound_rad(task, version, *without.emitted))), 0.1)};
   find_effect(task, state, without, out);
   return out;
 }

@@ -37,8 +37,8 @@ struct BindingLimit {
 std::string sentence(const BindingLimit& limit);
 
 /// Of the best round. The effect of a limit of the path comes from a prediction of the stretch that it holds back most,
-/// with this one limit removed; the stock before it is what a rigid tool leaves. That of a depth limit is the best round
-/// before the guard.
+/// with this one limit removed; the stock before it is what a rigid tool leaves. That of a depth limit is the best
+/// round before the guard.
 std::vector<BindingLimit> binding_limits(const Task& task, const State& state);
 
 }  // namespace camber::compensate

@@ -189,7 +189,8 @@ double depth_limit_um(const Task& task, const Version& version, const Trial& giv
 /// What shifts are expected to leave, before the first of them is predicted.
 void look_out(const Task& task, State& state, CompensationResult& out) {
   const JudgedErrors left = errors_after_shift(task, *state.active, *task.given.trial, 1);
-  out.figures.outlook = {state.rounds.front().error_um.p95, p95_of(left.error_um, left.area_mm2)};
+  const double given_um = state.rounds.front().error_um.p95;  // the squares fall, not always the percentile
+  out.figures.outlook = {given_um, std::min(given_um, p95_of(left.error_um, left.area_mm2))};
   if (task.options.outlook) task.options.outlook(out.figures.outlook);
 }
 

@@ -15,9 +15,9 @@ namespace {
 
 using simulate::SimulatedProgram;
 
-constexpr double kSplit_mm = 0.005;  // a split of a line of the passes before must be worth this
-constexpr double kFarthest_mm = 2;   // stock that is thicker is not what a pass before leaves
-constexpr int kSteps = 40;           // from the part's surface to the stock's
+constexpr double kSplit_mm = 0.005;   // a split of a line of the passes before must be worth this
+constexpr double kFarthest_mm = 2;    // stock that is thicker is not what a pass before leaves
+constexpr int kSteps = 40;            // from the part's surface to the stock's
 constexpr double kWorthMoving = 0.8;  // passes that leave no more than what is wanted over this stay
 
 /// Stamps of a program before its first move to compensate.
@@ -36,7 +36,8 @@ struct Left {
 };
 
 /// The thickness along the normal; not given: more than kFarthest_mm.
-std::optional<double> thickness_mm(const removal::Stock::Probe& stock, const removal::SurfacePoint& p, double close_mm) {
+std::optional<double> thickness_mm(const removal::Stock::Probe& stock, const removal::SurfacePoint& p,
+                                   double close_mm) {
   double out = 0;
   for (int i = 0; i < kSteps && out < kFarthest_mm; ++i) {
     const double inside_mm = -stock.distance_mm(p.place_mm + out * p.normal);
@@ -159,23 +160,23 @@ std::unique_ptr<Version> with_less_left(const Task& task, const Version& given) 
   const std::vector<Left> left = left_before(task, before);
   if (left.empty()) return nullptr;
   const double own_mm = task.job.compensation.pass_allowance_mm, given_mm = median_thickness_mm(left);
-  const double wanted_mm = own_mm > 0 ? own_mm
-                                      : pass_allowance_mm(deepest_bend_mm(*task.given.trial, before.stamps.size()),
-                                                          task.tolerance_mm());
+  const double wanted_mm =
+      own_mm > 0 ? own_mm
+                 : pass_allowance_mm(deepest_bend_mm(*task.given.trial, before.stamps.size()), task.tolerance_mm());
   if (wanted_mm > kWorthMoving * given_mm) return nullptr;
   const ShiftPath path = shifted(task, given, moves_of(program, before, left), before, left, wanted_mm);
   Splits splits(path);
   splits.add_strays(path, kSplit_mm);
   const nc::Emission emission = text_of(given.source, path, splits.kept());
   machine::Job job = task.job;
-  job.operations = moved_ranges(simulate::as_lines(job.operations, program.text(), program.moves_in_part()),
-                                emission.block_of_line);
+  job.operations =
+      moved_ranges(simulate::as_lines(job.operations, program.text(), program.moves_in_part()), emission.block_of_line);
   Diagnostics ignored;  // the given program's
   SimulatedProgram made = simulate::simulate_motion(SourceText(job.program, emission.text), job, {}, ignored);
-  EarlierCuts cuts{.text = {emission.text, emission.block_of_line,
-                            std::vector<bool>(emission.block_of_line.size(), false)},
-                   .moves = moves_as_emitted(program.moves_in_part(), made.moves_in_part(), emission),
-                   .allowance_mm = wanted_mm};
+  EarlierCuts cuts{
+      .text = {emission.text, emission.block_of_line, std::vector<bool>(emission.block_of_line.size(), false)},
+      .moves = moves_as_emitted(program.moves_in_part(), made.moves_in_part(), emission),
+      .allowance_mm = wanted_mm};
   std::unique_ptr<Version> out = taken_over(task, given, job, std::move(made), std::move(cuts));
   const removal::StampPath now = stamps_before(*out);
   const std::vector<Left> left_now = left_before(task, now);

@@ -33,8 +33,7 @@ double overcorrected_fraction(const Observed& before, const Observed& now, doubl
 std::size_t points_below(const Trial& trial, double limit_um) {
   std::size_t out = 0;
   for (std::size_t i = 0; i < trial.surface.size(); ++i)
-    if (trial.observed.compensated[i] && trial.surface[i].valid &&
-        -1000 * trial.observed.points[i].error_mm > limit_um)
+    if (trial.observed.compensated[i] && trial.surface[i].valid && -1000 * trial.observed.points[i].error_mm > limit_um)
       ++out;
   return out;
 }

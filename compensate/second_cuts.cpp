@@ -128,7 +128,7 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
   SecondCutVersion out;
   while (!chosen.empty()) {
     EarlierCuts repeated{.text = with_first_cuts(program, runs, chosen, first.emission),
-                          .allowance_mm = first.allowance_mm};
+                         .allowance_mm = first.allowance_mm};
     machine::Job job = task.job;
     job.operations = moved_ranges(simulate::as_lines(job.operations, program.text(), program.moves_in_part()),
                                   repeated.text.block_of_line);

@@ -21,8 +21,8 @@ enum class Reference {
 
 /// Part of a program that a compensation may change.
 enum class Lever : std::uint8_t {
-  shift,  ///< points of the path
-  feed,   ///< F words, where the error that no shift takes away exceeds the tolerance
+  shift,     ///< points of the path
+  feed,      ///< F words, where the error that no shift takes away exceeds the tolerance
   passes,    ///< runs of cuts that are made twice, where it does
   allowance  ///< the passes before, so that they leave as little as they can
 };
@@ -50,7 +50,8 @@ struct CompensationSettings {
   double half_width_um() const { return profile_um ? ((*profile_um)[1] - (*profile_um)[0]) / 2 : tolerance_um; }
   std::vector<Lever> levers;  ///< shift is always among them; empty: shift, and feed where F words can be changed
   bool has(Lever lever) const {
-    return levers.empty() ? lever == Lever::shift || lever == Lever::feed : std::ranges::find(levers, lever) != levers.end();
+    return levers.empty() ? lever == Lever::shift || lever == Lever::feed
+                          : std::ranges::find(levers, lever) != levers.end();
   }
   /// Extra machine time for feed and passes: the least error within it. Not given: as much as the tolerance takes, up
   /// to 10 % where the job does not name its levers, else to 200 %.

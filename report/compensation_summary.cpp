@@ -56,10 +56,14 @@ Json causes(const compensate::CompensationResult& c) {
 Json limits(const compensate::CompensationResult& c) {
   Json out = Json::array();
   for (const auto& limit : c.verdict.limits) {
-    Json j = {{"key", limit.key},         {"value", limit.value},
-              {"given", limit.own},       {"binds_no_more_at", limit.binds_no_more_at},
-              {"count", limit.count},     {"line", limit.line.given},
-              {"emitted_line", limit.line.emitted}, {"sentence", compensate::sentence(limit)}};
+    Json j = {{"key", limit.key},
+              {"value", limit.value},
+              {"given", limit.own},
+              {"binds_no_more_at", limit.binds_no_more_at},
+              {"count", limit.count},
+              {"line", limit.line.given},
+              {"emitted_line", limit.line.emitted},
+              {"sentence", compensate::sentence(limit)}};
     if (const compensate::LimitEffect& effect = limit.effect; effect.known())
       j["effect"] = {{"p95_um", effect.with_um},
                      {"p95_without_um", effect.without_um},

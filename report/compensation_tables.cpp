@@ -40,7 +40,8 @@ TextTable limits_table(const std::vector<compensate::BindingLimit>& limits) {
                           effect.known() ? um(effect.with_um) : "", effect.known() ? um(effect.without_um) : ""});
   }
   table.note =
-      "The last two columns: predicted for the stretch of the path that the limit holds back most; of a depth limit for "
+      "The last two columns: predicted for the stretch of the path that the limit holds back most; of a depth limit "
+      "for "
       "the whole program.";
   return table;
 }
