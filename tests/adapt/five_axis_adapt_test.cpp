@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "adapt/adapt.h"
+#include "test_paths.h"
 
 namespace camber::adapt {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "compensate/compensate.h"
 #include "nc/interpreter.h"
+#include "test_paths.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::compensate {
