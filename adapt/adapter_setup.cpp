@@ -21,7 +21,8 @@ namespace {
 /// What is known to be refused is refused before the long work.
 void check_given(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
   plausibility::check_program(job, program, diagnostics);
-  kinematics::refuse_rotary_motion(program, "adapt chooses feeds of X, Y and Z", diagnostics);
+  if (job.adapt->limits.chatter_margin)
+    kinematics::refuse_rotary_motion(program, "chatter_margin in [adapt] limits changes spindle speeds", diagnostics);
 }
 
 /// Length of the cells of each move: a fiftieth of the tool's diameter; the whole move where the control stops at the
@@ -29,11 +30,13 @@ void check_given(const machine::Job& job, const simulate::SimulatedProgram& prog
 std::vector<double> cell_lengths(const machine::Job& job, const simulate::SimulatedProgram& program) {
   constexpr double kOfDiameter = 0.02, kMin_mm = 0.1, kMax_mm = 0.5;
   std::vector<double> out;
+  const std::vector<bool> turning = kinematics::turning_moves(program);
   const bool stops = job.machine.control.corner.law == machine::CornerLaw::exact_stop;
   for (const nc::Move& m : program.moves_in_part().moves) {
     const nc::ModalState& state = program.moves_in_part().state_of(m);
     const auto tool = job.tools.find(state.tool);
-    if (stops || state.path_control == nc::PathControl::exact_stop)
+    const bool turns = !turning.empty() && turning[out.size()];  // its pieces would need their own angles
+    if (stops || turns || state.path_control == nc::PathControl::exact_stop)
       out.push_back(std::numeric_limits<double>::infinity());
     else
       out.push_back(tool == job.tools.end() ? kMax_mm
@@ -68,7 +71,7 @@ Adapter::Adapter(const machine::Job& job, Diagnostics& diagnostics, const AdaptO
   for (const LoadLimit& l : limits_) by_surface_ = by_surface_ || l.load == Load::form_error;
   set_up();
   if (settings_.limits.chatter_margin) change_speeds();
-  cells_.emplace(given(), cell_lengths(job_, given()));
+  cells_.emplace(given(), job_.machine, cell_lengths(job_, given()));
   check_cells();
   for (const Cell& c : cells_->cells()) {
     const auto tool = job_.tools.find(given().moves_in_part().state_of(given().moves_in_part().moves[c.move]).tool);

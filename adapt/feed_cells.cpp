@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/feed_meaning.h"
+
 namespace camber::adapt {
 namespace {
 
@@ -14,31 +16,38 @@ bool cuts(const nc::Move& m) {
   return (m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc) && m.feed_mm_per_s > 0;
 }
 
-bool plunges(const nc::Move& m) {
-  return m.kind == nc::MoveKind::linear && (m.end_mm - m.start_mm).head<2>().norm() < kUpright;
+/// Along the axis of the tool.
+bool plunges(const simulate::SimulatedProgram& program, std::uint32_t m) {
+  const nc::Move& move = program.moves_in_part().moves[m];
+  if (move.kind != nc::MoveKind::linear) return false;
+  const Vec3 way = move.end_mm - move.start_mm, axis = program.pose_at(m, 1).axis;
+  return (way - way.dot(axis) * axis).norm() < kUpright;
 }
 
-/// Edits of feed and of a split that the emitter refuses.
+/// Edits of feed and of a split that the emitter refuses. A move in which rotary axes turn is not split.
 std::vector<nc::EditNotMade> refused(const simulate::SimulatedProgram& program) {
   std::vector<nc::MoveEdit> probes;
+  const std::vector<bool> turning = kinematics::turning_moves(program);
   for (std::uint32_t m = 0; m < program.moves_in_part().moves.size(); ++m) {
     const nc::Move& move = program.moves_in_part().moves[m];
-    if (!cuts(move) || !program.selected[m] || plunges(move)) continue;
-    const double feed = kProbe * move.feed_mm_per_s;
-    probes.push_back(
-        {.move = m,
-         .via = {{.point_mm = nc::point_at(program.moves_in_part(), move, 0.5), .center_mm = {}, .feed_mm_per_s = {}}},
-         .end_mm = {},
-         .center_mm = {},
-         .feed_mm_per_s = feed});
+    if (!cuts(move) || !program.selected[m] || plunges(program, m)) continue;
+    const double feed = kProbe * program.moves_in_program().moves[m].feed_mm_per_s;
+    nc::MoveEdit probe{.move = m, .via = {}, .end_mm = {}, .center_mm = {}, .feed_mm_per_s = feed};
+    if (turning.empty() || !turning[m])
+      probe.via = {
+          {.point_mm = nc::point_at(program.moves_in_part(), move, 0.5), .center_mm = {}, .feed_mm_per_s = {}}};
+    probes.push_back(std::move(probe));
   }
-  return nc::emit_edits(program.text(), program.moves_in_part(), probes, {}).not_made;
+  return nc::emit_edits(program.text(), program.moves_in_program(),
+                        kinematics::edits_of_text(program, std::move(probes)), {})
+      .not_made;
 }
 
 }  // namespace
 
-FeedCells::FeedCells(const simulate::SimulatedProgram& program, std::span<const double> length_mm)
-    : not_editable_(refused(program)) {
+FeedCells::FeedCells(const simulate::SimulatedProgram& program, const machine::Machine& machine,
+                     std::span<const double> length_mm)
+    : tip_feed_mm_per_s_(kinematics::tip_feeds_mm_per_s(program, machine)), not_editable_(refused(program)) {
   const auto& moves = program.moves_in_part().moves;
   std::vector<bool> fixed(moves.size(), false);
   for (const nc::EditNotMade& n : not_editable_) fixed[n.move] = true;
@@ -50,10 +59,10 @@ FeedCells::FeedCells(const simulate::SimulatedProgram& program, std::span<const 
       continue;
     }
     const bool hole = program.holes[m] != removal::HoleMove::none || moves[m].canned;
-    const Kept kept = hole || plunges(moves[m]) ? Kept::plunge
-                      : !program.selected[m]    ? Kept::unknown_load
-                      : fixed[m]                ? Kept::not_editable
-                                                : Kept::no;
+    const Kept kept = hole || plunges(program, m) ? Kept::plunge
+                      : !program.selected[m]      ? Kept::unknown_load
+                      : fixed[m]                  ? Kept::not_editable
+                                                  : Kept::no;
     const std::size_t first = cells_.size();
     add(program, m, length_mm[m], kept);
     if (cells_.size() == first) continue;
@@ -84,7 +93,7 @@ void FeedCells::add(const simulate::SimulatedProgram& program, std::uint32_t m, 
                       .from = static_cast<double>(i) / all,
                       .to = static_cast<double>(i + 1) / all,
                       .length_mm = length / all,
-                      .feed_mm_per_s = move.feed_mm_per_s,
+                      .feed_mm_per_s = tip_feed_mm_per_s_[m],
                       .kept = kept});
 }
 
@@ -95,10 +104,14 @@ std::size_t FeedCells::find(std::uint32_t move, double fraction) const {
   return first + std::min(count - 1, static_cast<std::size_t>(std::max(0.0, at)));
 }
 
-std::vector<nc::MoveEdit> FeedCells::edits(const nc::Interpretation& moves, std::span<const double> feed) const {
+std::vector<nc::MoveEdit> FeedCells::edits(const simulate::SimulatedProgram& program,
+                                           std::span<const double> feed) const {
+  const nc::Interpretation& moves = program.moves_in_part();
   std::vector<nc::MoveEdit> out;
   for (std::size_t i = 0; i < cells_.size();) {
     const std::uint32_t m = cells_[i].move;
+    const double as_programmed = program.moves_in_program().moves[m].feed_mm_per_s, of_tip = tip_feed_mm_per_s_[m],
+                 in_text = of_tip > 0 ? as_programmed / of_tip : 1;
     std::size_t end = i;
     bool changed = false;
     nc::MoveEdit edit{.move = m, .via = {}, .end_mm = {}, .center_mm = {}, .feed_mm_per_s = {}};
@@ -107,13 +120,13 @@ std::vector<nc::MoveEdit> FeedCells::edits(const nc::Interpretation& moves, std:
       if (end > i && std::abs(feed[end] - feed[end - 1]) > kSameFeed * feed[end])
         edit.via.push_back({.point_mm = nc::point_at(moves, moves.moves[m], cells_[end].from),
                             .center_mm = {},
-                            .feed_mm_per_s = feed[end - 1]});
+                            .feed_mm_per_s = in_text * feed[end - 1]});
     }
-    edit.feed_mm_per_s = feed[end - 1];
+    edit.feed_mm_per_s = in_text * feed[end - 1];
     if (changed && cells_[i].kept == Kept::no) out.push_back(std::move(edit));
     i = end;
   }
-  return out;
+  return kinematics::edits_of_text(program, std::move(out));
 }
 
 }  // namespace camber::adapt

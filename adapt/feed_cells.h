@@ -24,7 +24,7 @@ struct Cell {
   double from = 0, to = 1;  ///< fractions of the move's length
   double length_mm = 0;
   double along_mm = 0;       ///< path length at its end, from the start of its chain
-  double feed_mm_per_s = 0;  ///< programmed
+  double feed_mm_per_s = 0;  ///< programmed, of the tip on the part
   Kept kept = Kept::no;
   bool first = false;  ///< first of a chain: after a rapid or a dwell
 };
@@ -34,8 +34,9 @@ class FeedCells {
  public:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  /// `length_mm`: greatest length of a cell, by move.
-  FeedCells(const simulate::SimulatedProgram& program, std::span<const double> length_mm);
+  /// `length_mm`: greatest length of a cell, by move; moves in which rotary axes turn are one cell.
+  FeedCells(const simulate::SimulatedProgram& program, const machine::Machine& machine,
+            std::span<const double> length_mm);
 
   const std::vector<Cell>& cells() const { return cells_; }
   std::size_t size() const { return cells_.size(); }
@@ -47,12 +48,15 @@ class FeedCells {
   /// Moves whose feed the text does not allow to change, and why.
   const std::vector<nc::EditNotMade>& not_editable() const { return not_editable_; }
 
-  /// The edits that give every cell its feed; nothing is edited where it is the programmed one. One per cell.
-  std::vector<nc::MoveEdit> edits(const nc::Interpretation& moves, std::span<const double> feed_mm_per_s) const;
+  /// The edits of the text that give every cell its feed; nothing is edited where it is the programmed one. One per
+  /// cell.
+  std::vector<nc::MoveEdit> edits(const simulate::SimulatedProgram& program,
+                                  std::span<const double> feed_mm_per_s) const;
 
  private:
   void add(const simulate::SimulatedProgram& program, std::uint32_t move, double length_mm, Kept kept);
 
+  std::vector<double> tip_feed_mm_per_s_;  ///< one per move
   std::vector<Cell> cells_;
   std::vector<std::size_t> first_of_move_;  ///< one per move and one more
   std::vector<std::pair<std::size_t, std::size_t>> chains_;

@@ -55,9 +55,8 @@ FeedChooser::FeedChooser(const machine::Job& job, const simulate::SimulatedProgr
 std::shared_ptr<FeedCandidate> FeedChooser::with(std::vector<double> feed) const {
   auto out = std::make_shared<FeedCandidate>();
   out->feed_mm_per_s = std::move(feed);
-  out->emission =
-      nc::emit_edits(given_.text(), given_.moves_in_part(), cells_.edits(given_.moves_in_part(), out->feed_mm_per_s),
-                     kinematics::decimals_for(job_.machine.control, given_.text()));
+  out->emission = nc::emit_edits(given_.text(), given_.moves_in_program(), cells_.edits(given_, out->feed_mm_per_s),
+                                 kinematics::decimals_for(job_.machine.control, given_.text()));
   Diagnostics repeated;  // those of the given program
   machine::Job job = job_;
   out->operations = motion::moved_ranges(motion::as_lines(job_.operations, given_.text(), given_.moves_in_part()),

@@ -133,6 +133,7 @@ CompensateResult result_of(const CompensationResult& c, const machine::Compensat
   for (const auto& point : c.time_points) out.time_points.push_back({point.allowed_percent, point.round});
   for (const auto& run : c.passes.runs) out.repeated.push_back({run.first_line, run.last_line});
   out.pass_allowance_mm = c.passes.allowance_mm;
+  if (c.pass_before) out.given_allowance_mm = c.pass_before->given_mm, out.allowance_mm = c.pass_before->left_mm;
   return out;
 }
 

@@ -225,7 +225,9 @@ void add_compensate_command(CLI::App& app, const GlobalOptions& options, Action&
           "extra machine time, %, for lower feeds and second cuts: the least error within it ([compensation] levers)")
       ->check(CLI::Range(0.0, 1000.0))
       ->type_name("PERCENT");
-  command->add_option("--levers", arguments->options.levers, "what may change, instead of the job's: shift,feed,passes")
+  command
+      ->add_option("--levers", arguments->options.levers,
+                   "what may change, instead of the job's: shift,feed,passes,allowance")
       ->delimiter(',')
       ->expected(1)
       ->take_all()

@@ -59,7 +59,6 @@ struct Round {
   double overcorrected_fraction = 0;  ///< fraction of the area whose error changed its sign and is over the tolerance
   double deepest_um = 0;              ///< depth that 99.9 % of the compensated surface keeps
   bool guard = false;                 ///< a round of the guard against gouging
-  double free_angle_growth_rad = 0;   ///< growth of angles before max_angle_growth_deg bounded it
   double machine_time_s = 0;
   std::size_t slowed = 0;    ///< changes of feed: stretches of the path with a feed of their own, and their ends
   std::size_t repeated = 0;  ///< runs of cuts between rapids that are cut twice
@@ -134,6 +133,11 @@ struct SecondCuts {
   std::string text{};       ///< the program whose path was shifted, where runs are cut twice; else empty
 };
 
+/// What the passes before leave for the moves to compensate (pass_before.h).
+struct PassBefore {
+  double given_mm = 0, left_mm = 0;  ///< medians of the surface, of the given and of the emitted program
+};
+
 /// Depth into the part.
 struct Safety {
   double depth_limit_um = 0;     ///< the job's, or default_depth_limit_um
@@ -176,6 +180,7 @@ struct CompensationResult {
   FormFigures figures;
   CompensationVerdict verdict;
   SecondCuts passes;
+  std::optional<PassBefore> pass_before{};  ///< not given: the passes before are as given
   Safety safety;
   PathFigures path;
   UncertaintyFigures uncertainty;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compensate/pass_before.h"
 #include "compensate/propose.h"
 
 namespace camber::compensate {
@@ -17,7 +18,7 @@ constexpr double kAlike = 0.1;          // of the figure: rounds that differ by 
 constexpr double kAlikeWorse_um = 0.1;  // and with less than this between them by the figure
 
 bool keeps_limits(const RoundFigures& r, const RoundFigures& given, double depth_limit_um) {
-  return !r.over_budget && r.rms_um < given.rms_um && r.p95_um <= given.p95_um &&
+  return !r.out_of_question && r.rms_um < given.rms_um && r.p95_um <= given.p95_um &&
          r.depth_um <= std::max(depth_limit_um, given.depth_um);
 }
 
@@ -141,9 +142,10 @@ void record(const Task& task, State& state, Round round) {
   round.slowed = count_feed_changes(version.path);
   round.repeated = version.passes().size();
   state.rounds.push_back(round);
+  const bool spoilt = version.repeated && version.repeated->pass_before && cuts_into_part(task, trial);
   state.figures.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um,
-                           round.machine_time_s > state.allowed_s, worse_of(task, trial).p999_um});
-  const bool by_p95 = task.has(machine::Lever::feed) || task.has(machine::Lever::passes);
+                           round.machine_time_s > state.allowed_s || spoilt, worse_of(task, trial).p999_um});
+  const bool by_p95 = !task.only_shifts();
   const std::size_t allowed = choose_round(state.figures, limit_um, by_p95);
   // Only the newest round can take the place of another.
   if (allowed != state.allowed.round) state.allowed = {state.last, allowed};

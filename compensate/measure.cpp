@@ -8,6 +8,7 @@
 
 #include "compensate/hidden_rows.h"
 #include "compensate/judge.h"
+#include "compensate/pass_before.h"
 #include "compensate/passes.h"
 #include "compensate/propose.h"
 #include "motion/operations.h"
@@ -78,6 +79,17 @@ void check_levers(Task& task, const std::vector<bool>& selected) {
     check_passes(program, selected, diagnostics);
   }
   diagnostics.throw_if_errors();
+}
+
+void check_passes_before(const Task& task, const Version& given) {
+  if (!task.has(machine::Lever::allowance) || has_passes_before(task, given)) return;
+  task.diagnostics.add({Severity::error,
+                        {task.job.path, 0, 0},
+                        "levers names \"allowance\", but no pass before those to compensate cuts what they cut, or its "
+                        "moves cannot be shifted; levers without \"allowance\" were expected",
+                        "lever-unusable",
+                        {}});
+  task.diagnostics.throw_if_errors();
 }
 
 /// What the best shift of each place by itself leaves, one per point of the surface.
@@ -177,7 +189,8 @@ double depth_limit_um(const Task& task, const Version& version, const Trial& giv
 /// What shifts are expected to leave, before the first of them is predicted.
 void look_out(const Task& task, State& state, CompensationResult& out) {
   const JudgedErrors left = errors_after_shift(task, *state.active, *task.given.trial, 1);
-  out.figures.outlook = {state.rounds.front().error_um.p95, p95_of(left.error_um, left.area_mm2)};
+  const double given_um = state.rounds.front().error_um.p95;  // the squares fall, not always the percentile
+  out.figures.outlook = {given_um, std::min(given_um, p95_of(left.error_um, left.area_mm2))};
   if (task.options.outlook) task.options.outlook(out.figures.outlook);
 }
 
@@ -192,7 +205,7 @@ Version::Version(ShiftedProgram shifted, std::vector<bool> moves_to_compensate, 
     : source(std::move(shifted)),
       compensated(std::move(moves_to_compensate)),
       path(source.program->moves_in_part(), compensated, spacing_mm, source.job.machine.control.block_time_s,
-           turning_moves(*source.program)),
+           kinematics::turning_moves(*source.program)),
       sensitivity(path),
       stiffness(path.points().size(), 1.0),
       links(row_links(path, kRowReach_mm)),
@@ -231,6 +244,7 @@ State measure_given(Task& task, CompensationResult& out) {
   task.given.depth_limit_um = depth_limit_um(task, version, *given);
   task.given.plain = figures_of(task, *given);
   task.given.time_s = task.setup->program.feed.time_s;
+  check_passes_before(task, version);
   record(task, state, {});
   look_out(task, state, out);
   out.figures.plain_before = task.given.plain;

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "base/units.h"
 #include "compensate/fit_shift.h"
 #include "compensate/judge.h"
+#include "compensate/pass_before.h"
 #include "compensate/propose.h"
 #include "simulate/verdict.h"
 
@@ -100,32 +100,9 @@ std::vector<ProgramLine> lines_of(const Version& version, const Trial& trial, st
   return out;
 }
 
-/// Returns, for each limit that the best round met, the value from which it would not bind.
-std::vector<BindingLimit> binding_limits(const Task& task, const State& state, const CompensationResult& out) {
-  const machine::CompensationSettings& asked = task.job.compensation;
-  const Version& version = *state.active;
-  const Round& best = out.rounds[out.best];
-  const double limit_um = task.given.depth_limit_um;
-  std::vector<BindingLimit> limits;
-  if (best.limited_points > 0) {
-    FitShiftOptions free = fit_options(task, version);
-    free.max_shift_mm = std::numeric_limits<double>::infinity();
-    ShiftPath path = version.path;
-    fit_shift(path, wanted_of(task, version, state.best.trial->observed, nullptr), free);
-    if (const double wanted = path.largest_shift_mm(); wanted > asked.max_shift_mm)
-      limits.push_back({kMaxShiftKey, asked.max_shift_mm, std::ceil(1000 * wanted) / 1000});
-  }
-  if (best.free_angle_growth_rad > asked.max_angle_growth_rad)
-    limits.push_back({kAngleGrowthKey, deg_from_rad(asked.max_angle_growth_rad),
-                      std::ceil(10 * deg_from_rad(best.free_angle_growth_rad)) / 10});
-  if (const Round& unguarded = out.rounds[state.free.round]; best.guard && unguarded.deepest_um > limit_um)
-    limits.push_back({asked.profile_um ? kProfileKey : kOvercutKey, limit_um, std::ceil(10 * unguarded.deepest_um) / 10,
-                      out.safety.own_depth_limit});
-  return limits;
-}
-
-Tried tried(const State& state, const CompensationResult& out) {
+Tried tried(const Task& task, const State& state, const CompensationResult& out) {
   Tried found;
+  found.pass_before = task.has(machine::Lever::allowance) || !has_passes_before(task, *state.versions.front());
   found.rounds = state.ended == Stop::stalled;
   for (const Round& round : out.rounds) {
     found.feeds = found.feeds || round.slowed > 0;
@@ -181,10 +158,11 @@ std::vector<CauseFigure> causes(const Task& task, const State& state, const Comp
   for (const removal::SurfacePoint& p : best.surface) stamps.push_back(p.machined_stamp);
   std::vector<CauseFigure> found =
       causes_of(out.rounds[out.best].split, points, best.observed, lines_of(version, best, stamps));
+  const Tried done = tried(task, state, out);
   for (CauseFigure& cause : found) {
     if (task.setup->target.contour_parts && cause.cause == Cause::short_range)
       cause.contour = contour_cause_of(cause.cause, points, best.surface);
-    cause.remedies = remedies_of(cause, tried(state, out));
+    cause.remedies = remedies_of(cause, done);
   }
   return found;
 }
@@ -252,6 +230,8 @@ void add_header(const Task& task, const State& state, CompensationResult& out) {
   const std::size_t more = SourceText("", out.emitted.text).line_count() - out.emitted.blocks_after;
   for (CauseFigure& cause : out.verdict.causes)
     for (ProgramLine& line : cause.lines) line.emitted += more;
+  for (BindingLimit& limit : out.verdict.limits)
+    if (limit.line.emitted > 0) limit.line.emitted += more;
   if (out.safety.after.line.emitted > 0) out.safety.after.line.emitted += more;
 }
 
@@ -285,6 +265,7 @@ void conclude(const Task& task, State& state, bool better, CompensationResult& o
   out.surfaces.after = best.surface;
   out.surfaces.loads_after = best.loads;
   out.passes = second_cuts(task, state);
+  if (version.repeated) out.pass_before = version.repeated->pass_before;
   if (best.emitted)
     warn_of_not_emitted(given.text(), given.moves_in_part(), in_given(version, best.emitted->emission.not_made),
                         task.diagnostics);
@@ -305,7 +286,7 @@ void conclude(const Task& task, State& state, bool better, CompensationResult& o
   verdict.better = better;
   verdict.within_tolerance = within_tolerance(figures.plain_after, task.job.compensation);
   verdict.stop = stop_of(state, out);
-  verdict.limits = binding_limits(task, state, out);
+  verdict.limits = binding_limits(task, state);
   if (!verdict.within_tolerance) verdict.causes = causes(task, state, out);
   if (task.options.max_stock_crossings > 0)
     out.surfaces.stock = removal::stock_shape(task.setup->target.surface, task.options.max_stock_crossings);

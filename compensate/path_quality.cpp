@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -24,6 +25,35 @@ std::optional<double> given_turn(const nc::Interpretation& given, std::uint32_t 
   if (nc::length_mm(given, from) < kShort_mm || nc::length_mm(given, to) < kShort_mm) return std::nullopt;
   return angle_between(nc::direction_at(given, from, 1), nc::direction_at(given, to, 0));
 }
+
+/// Corners of the given program, along its path.
+class Corners {
+ public:
+  explicit Corners(const nc::Interpretation& given) {
+    double along_mm = 0;
+    for (std::uint32_t m = 0; m < given.moves.size(); ++m) {
+      starts_mm_.push_back(along_mm);
+      lengths_mm_.push_back(cuts(given.moves[m]) ? nc::length_mm(given, given.moves[m]) : 0);
+      along_mm += lengths_mm_.back();
+      if (m + 1 == given.moves.size() || !cuts(given.moves[m]) || !cuts(given.moves[m + 1])) continue;
+      if (const auto turn = given_turn(given, m, m + 1); turn && *turn > 0) corners_.emplace_back(along_mm, *turn);
+    }
+  }
+
+  /// The sharpest within kCorner_mm of a place; 0: there is none.
+  double turn_rad_near(const nc::MoveMap::MovePlace& place) const {
+    const double at_mm = starts_mm_[place.move] + place.fraction * lengths_mm_[place.move];
+    auto corner = std::ranges::lower_bound(corners_, at_mm - kCorner_mm, {}, &std::pair<double, double>::first);
+    double out = 0;
+    for (; corner != corners_.end() && corner->first <= at_mm + kCorner_mm; ++corner)
+      out = std::max(out, corner->second);
+    return out;
+  }
+
+ private:
+  std::vector<double> starts_mm_, lengths_mm_;        ///< one per move
+  std::vector<std::pair<double, double>> corners_{};  ///< place along the path, and turn
+};
 
 std::vector<std::optional<double>> mean_errors_mm(const ShiftPath& path, const Observed& observed) {
   struct Sums {
@@ -58,6 +88,7 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
                          const nc::Interpretation& emitted, const nc::MoveMap& map, double block_time_s,
                          double angle_bound_rad) {
   PathQuality out;
+  const Corners corners(given);
   out.shortest_mm = std::numeric_limits<double>::infinity();
   const auto split = [&](std::size_t m) {
     const nc::MoveMap::MovePlace first = map.given(static_cast<std::uint32_t>(m), 0),
@@ -87,7 +118,7 @@ PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool
       out.angle_growth_rad = growth;
       out.angle_line = emitted.moves[next].block + 1;
     }
-    if (growth > angle_bound_rad) out.over.push_back(end);
+    if (growth > std::max(angle_bound_rad, kOfCorner * corners.turn_rad_near(end))) out.over.push_back(end);
   }
   if (!std::isfinite(out.shortest_mm)) out.shortest_mm = 0;
   return out;

@@ -22,11 +22,13 @@ struct PathQuality {
 };
 
 /// Between consecutive moves that may be shifted (`selected`, of the given program). Moves shorter than kShort_mm in
-/// the given program turn freely and are left out.
+/// the given program turn freely and are left out. Within kCorner_mm of a corner of the given program, where the
+/// control is slow and the axes cut short, the bound is kOfCorner of the corner's angle where that is larger.
 PathQuality path_quality(const nc::Interpretation& given, const std::vector<bool>& selected,
                          const nc::Interpretation& emitted, const nc::MoveMap& map, double block_time_s,
                          double angle_bound_rad);
 inline constexpr double kShort_mm = 0.02;
+inline constexpr double kCorner_mm = 2, kOfCorner = 1.0 / 3;
 
 /// Returns how the shift changes from row to row: the 95th percentile and the largest |difference| between each point
 /// of the path and the nearest one that is not its neighbour along the path, within `reach_mm`.

@@ -55,11 +55,6 @@ void fit_and_emit(const Task& task, Version& version, const std::vector<Observat
     const PathQuality& quality = out.made->emitted->quality;
     thin.take_shifts(path);
     const RowTurn turn = row_turn(thin.path(), links, task.job.compensation.max_angle_growth_rad);
-    if (i == 0) {
-      double& free_growth = version.free_angle_growth_rad;
-      free_growth = std::max({free_growth, quality.angle_growth_rad, turn.max_rad});
-      out.round.free_angle_growth_rad = free_growth;
-    }
     if (quality.over.empty() && turn.over.empty()) break;
     stiffen(version, quality.over);
     for (const std::size_t link : turn.over) link_stiffness[link] *= kStiffer;

@@ -206,11 +206,6 @@ std::string larger(const BindingLimit& limit) {
 
 }  // namespace
 
-std::string sentence(const BindingLimit& limit) {
-  return fmt::format("{} = {:.3g}{} binds; from {:.3g} on it would not", limit.key, limit.value,
-                     limit.own ? "" : " (default)", limit.binds_no_more_at);
-}
-
 std::vector<std::string> remedies_of(const CauseFigure& figure, const Tried& tried) {
   std::vector<std::string> out;
   const auto limits = [&](auto... keys) {
@@ -254,6 +249,7 @@ std::vector<std::string> remedies_of(const CauseFigure& figure, const Tried& tri
       break;
     case Cause::bow:
       if (!tried.second_cuts) out.push_back("a second cut (lever \"passes\")");
+      if (!tried.pass_before) out.push_back("less stock left by the pass before (lever \"allowance\")");
       out.push_back("a shorter tool");
       lower_feed("a lower feed");
       break;

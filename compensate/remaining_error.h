@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compensate/attribution.h"
+#include "compensate/binding_limits.h"
 #include "compensate/error_split.h"
 #include "compensate/safety.h"
 #include "machine/compensation_settings.h"
@@ -61,23 +62,11 @@ struct CauseFigure {
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
                                    const Observed& observed, const std::vector<ProgramLine>& lines);
 
-inline constexpr const char *kMaxShiftKey = "max_shift_mm", *kAngleGrowthKey = "max_angle_growth_deg",
-                            *kOvercutKey = "max_overcut_um", *kProfileKey = "profile_um";
-
-/// A limit of the job that kept the path from the shifts that its error asks for.
-struct BindingLimit {
-  std::string key;   ///< "max_shift_mm"
-  double value = 0;  ///< of the job, in the key's unit
-  double binds_no_more_at = 0;
-  bool own = true;  ///< false: the job does not give it
-};
-/// "max_shift_mm = 0.1 binds; from 0.134 on it would not".
-std::string sentence(const BindingLimit& limit);
-
 /// What a compensation has used.
 struct Tried {
   bool rounds = false;  ///< they ended before max_rounds: one more was not worth it
   bool feeds = false, second_cuts = false;
+  bool pass_before = true;  ///< false: there are passes before, and they were left as given
   std::vector<BindingLimit> limits{};
 };
 /// What may take a cause away and has not been tried.

@@ -29,6 +29,15 @@ double overcorrected_fraction(const Observed& before, const Observed& now, doubl
   return area > 0 ? over / area : 0;
 }
 
+/// Points of the compensated surface that lie deeper than the limit.
+std::size_t points_below(const Trial& trial, double limit_um) {
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < trial.surface.size(); ++i)
+    if (trial.observed.compensated[i] && trial.surface[i].valid && -1000 * trial.observed.points[i].error_mm > limit_um)
+      ++out;
+  return out;
+}
+
 }  // namespace
 
 void converge(const Task& task, State& state) {
@@ -63,7 +72,9 @@ void stay_out_of_part(const Task& task, State& state) {
   const double reach = std::max(kGuardReach_mm, kGuardSmoothings * fit_options(task, version).smoothing_mm);
   Guard guard(version.path, limit_um / 1000, reach);
   state.last = state.best.trial;
-  state.free = {state.rounds[before].split.correctable_um, before, state.best.trial->emitted};
+  const Trial& free = *state.best.trial;
+  state.free = {state.rounds[before].split.correctable_um, before, free.emitted, points_below(free, limit_um),
+                depth_of(free.surface, free.observed, limit_um, true).stamp};
   double deepest_um = state.rounds[before].deepest_um, least_um = deepest_um;
   int without_gain = 0;
   for (int i = 0; i < kGuardRounds && without_gain < kGuardPatience && deepest_um > limit_um; ++i) {

@@ -92,9 +92,10 @@ void warn_of_run(const Task& task, std::uint32_t block, const std::string& why, 
                                               fmt::format("the cuts here are made once: the moves {}", why), check));
 }
 
-/// What a version takes over from the given program. `program`: its own, with the runs of `repeated`.
+}  // namespace
+
 std::unique_ptr<Version> taken_over(const Task& task, const Version& given, const machine::Job& job,
-                                    SimulatedProgram program, RepeatedCuts repeated) {
+                                    SimulatedProgram program, EarlierCuts repeated) {
   ShiftedProgram source = given.source;
   const std::size_t count = program.moves_in_part().moves.size();
   std::vector<bool> compensated(count, false);
@@ -112,8 +113,6 @@ std::unique_ptr<Version> taken_over(const Task& task, const Version& given, cons
   return out;
 }
 
-}  // namespace
-
 std::vector<PassRun> runs_after_shifts(const Task& task, Version& given) {
   const Trial& base = *given.best_shifted;
   given.path.set_shifts(base.shifts);
@@ -128,8 +127,8 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
   const FirstCuts first = first_cuts(task, given);
   SecondCutVersion out;
   while (!chosen.empty()) {
-    RepeatedCuts repeated{.text = with_first_cuts(program, runs, chosen, first.emission),
-                          .allowance_mm = first.allowance_mm};
+    EarlierCuts repeated{.text = with_first_cuts(program, runs, chosen, first.emission),
+                         .allowance_mm = first.allowance_mm};
     machine::Job job = task.job;
     job.operations = moved_ranges(motion::as_lines(job.operations, program.text(), program.moves_in_part()),
                                   repeated.text.block_of_line);

@@ -12,6 +12,10 @@ namespace camber::compensate {
 /// shifts afterwards.
 std::vector<PassRun> runs_after_shifts(const Task& task, Version& given);
 
+/// A version that takes over from the given program what stays. `program`: its own, with the cuts of `repeated`.
+std::unique_ptr<Version> taken_over(const Task& task, const Version& given, const machine::Job& job,
+                                    simulate::SimulatedProgram program, EarlierCuts repeated);
+
 struct SecondCutVersion {
   std::unique_ptr<Version> version{};  ///< null: none of the runs can be cut twice
   bool too_slow = false;               ///< runs were left out for want of time

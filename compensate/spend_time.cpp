@@ -9,6 +9,7 @@
 #include "compensate/feed_lever.h"
 #include "compensate/judge.h"
 #include "compensate/measure.h"
+#include "compensate/pass_before.h"
 #include "compensate/rounds.h"
 #include "compensate/second_cuts.h"
 
@@ -133,6 +134,25 @@ void compensate_version(const Task& task, State& state, std::unique_ptr<Version>
   state.activate(state.best.trial->version);
 }
 
+/// The passes before leave less, if that brings more than it spoils.
+void leave_less_before(const Task& task, State& state) {
+  if (!task.has(machine::Lever::allowance)) return;
+  std::unique_ptr<Version> version = with_less_left(task, *state.versions.front());
+  if (!version) return;
+  const Kept best = state.best;
+  version->index = state.versions.size();
+  state.versions.push_back(std::move(version));
+  state.activate(state.versions.size() - 1);
+  measure_version(task, state);
+  if (!cuts_into_part(task, *state.last)) {
+    state.step_fraction = 1;
+    converge(task, state);
+  }
+  const Round &found = state.rounds[state.best.round], &old = state.rounds[best.round];
+  if (cuts_into_part(task, *state.best.trial) || found.error_um.p95 >= old.error_um.p95) state.best = best;
+  state.activate(state.best.trial->version);
+}
+
 /// The runs whose error exceeds what is wanted are cut twice, if that fits into the time. True: more time would allow
 /// more. The best of the versions is active afterwards.
 bool cut_twice(const Task& task, State& state, double percent) {
@@ -160,6 +180,8 @@ bool cut_twice(const Task& task, State& state, double percent) {
 }  // namespace
 
 void spend_time(const Task& task, State& state) {
+  if (task.only_shifts()) return;
+  leave_less_before(task, state);
   if (!task.has(machine::Lever::feed) && !task.has(machine::Lever::passes)) return;
   state.time_points.push_back({0, state.best.round});
   const auto budget = task.budget_percent();

@@ -47,6 +47,9 @@ struct Task {
   bool has(machine::Lever lever) const {
     return job.compensation.has(lever) && !(feed_unusable && lever == machine::Lever::feed);
   }
+  bool only_shifts() const {
+    return !has(machine::Lever::feed) && !has(machine::Lever::passes) && !has(machine::Lever::allowance);
+  }
   /// Extra machine time for the least error; not given: as much as the tolerance takes.
   std::optional<double> budget_percent() const {
     return options.time_budget_percent ? options.time_budget_percent : job.compensation.time_budget_percent;
@@ -57,15 +60,16 @@ struct Task {
   double spacing_mm() const;
 };
 
-/// Runs that a version cuts twice.
-struct RepeatedCuts {
-  std::vector<std::size_t> runs{};     ///< indices of pass_runs
+/// What a version cuts before the moves to compensate: runs of them once more, or the passes before on another path.
+struct EarlierCuts {
+  std::vector<std::size_t> runs{};     ///< cut twice: indices of pass_runs
   nc::RepeatedText text;               ///< of the given program with runs repeated
   std::vector<std::uint32_t> moves{};  ///< this version's, one per move of the given program
-  double allowance_mm = 0;             ///< left by first cuts
+  double allowance_mm = 0;             ///< left by first cuts, or by the passes before
+  std::optional<PassBefore> pass_before{};
 };
 
-/// A program whose path is shifted: the given one, or one in which runs are cut twice. Its moves to compensate are the
+/// A program whose path is shifted: the given one, or one with other cuts before. Its moves to compensate are the
 /// given program's, so that places on `path` have the same indices in every version.
 struct Version {
   Version(ShiftedProgram shifted, std::vector<bool> moves_to_compensate, double spacing_mm);
@@ -73,11 +77,10 @@ struct Version {
   std::size_t index = 0;  ///< Trial::version
   ShiftedProgram source;
   std::vector<bool> compensated;  ///< one per move
-  std::optional<RepeatedCuts> repeated{};
+  std::optional<EarlierCuts> repeated{};
   ShiftPath path;
   Sensitivity sensitivity;
-  std::vector<double> stiffness;     ///< stiffness of the path, one per point
-  double free_angle_growth_rad = 0;  ///< largest, before the path was made stiffer there
+  std::vector<double> stiffness;  ///< stiffness of the path, one per point
   std::vector<RowLink> links;
   Splits splits;
   bool split_once = false;
@@ -101,12 +104,14 @@ struct BeforeGuard {
   double correctable_um = 0;
   std::size_t round = 0;
   std::shared_ptr<const Emitted> emitted;
+  std::size_t too_deep = 0;         ///< points of the surface below the depth limit
+  std::int32_t deepest_stamp = -1;  ///< that made the deepest of them
 };
 
 struct RoundFigures {
   double rms_um = 0, p95_um = 0;  ///< judged error
   double depth_um = 0;            ///< gouge depth of 99.9 % of the surface
-  bool over_budget = false;       ///< takes more machine time than is allowed
+  bool out_of_question = false;   ///< takes more machine time than is allowed, or its passes before cut too deep
   double worse_um = 0;            ///< WorsePlaces::p999_um
 };
 

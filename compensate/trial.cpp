@@ -1,6 +1,5 @@
 #include "compensate/trial.h"
 
-#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -15,31 +14,6 @@ void Trial::keep(simulate::Prediction prediction) {
   all_valid = prediction.validity.all();
   chip_mm3 = prediction.cut.chip_mm3;
   stock_mm3 = prediction.cut.stock_mm3;
-}
-
-std::vector<bool> turning_moves(const simulate::SimulatedProgram& program) {
-  std::vector<bool> out;
-  if (const kinematics::PartPath* path = program.part_path())
-    for (std::uint32_t m = 0; m < program.moves_in_part().moves.size(); ++m) out.push_back(path->turn_rad(m) > 0);
-  return out;
-}
-
-std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& program, std::vector<nc::MoveEdit> edits) {
-  const kinematics::PartPath* path = program.part_path();
-  if (!path) return edits;
-  for (nc::MoveEdit& edit : edits) {
-    const auto turn_back = [&](std::optional<Vec3>& place) {
-      if (place) place = path->text_mm(edit.move, *place);
-    };
-    assert(edit.via.empty() || path->turn_rad(edit.move) == 0);
-    for (nc::ViaPoint& via : edit.via) {
-      via.point_mm = path->text_mm(edit.move, via.point_mm).value_or(via.point_mm);
-      turn_back(via.center_mm);
-    }
-    turn_back(edit.end_mm);
-    turn_back(edit.center_mm);
-  }
-  return edits;
 }
 
 ShiftedProgram given_program(const machine::Job& job, const std::shared_ptr<const simulate::Setup>& setup) {
@@ -75,7 +49,7 @@ nc::Emission text_of(const ShiftedProgram& from, const ShiftPath& path, const st
   options.header_comment = header;
   const simulate::SimulatedProgram& program = *from.program;
   return nc::emit_edits(program.text(), program.moves_in_program(),
-                        edits_of_text(program, path.edits(splits, kViaTolerance_mm)), options);
+                        kinematics::edits_of_text(program, path.edits(splits, kViaTolerance_mm)), options);
 }
 
 simulate::Prediction predict(const ShiftedProgram& from, const Emitted* emitted,

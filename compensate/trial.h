@@ -41,12 +41,6 @@ struct Trial {
   void keep(simulate::Prediction prediction);
 };
 
-/// One per move: rotary axes turn in it. Such a move is not split, since its pieces would need their own angles. Empty
-/// without rotary motion.
-std::vector<bool> turning_moves(const simulate::SimulatedProgram& program);
-/// Edits of a program's moves in the coordinates of its text, with the angles of the rotary axes as they are.
-std::vector<nc::MoveEdit> edits_of_text(const simulate::SimulatedProgram& program, std::vector<nc::MoveEdit> edits);
-
 using kinematics::decimals_for;
 using motion::moved_ranges;
 

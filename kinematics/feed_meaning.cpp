@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "kinematics/machine_program.h"
 #include "kinematics/program_joints.h"
 
 namespace camber::kinematics {
@@ -48,6 +49,22 @@ std::optional<double> programmed_time_s(const nc::Interpretation& program, const
   const double speed = feed_along_path(program, move, turn_rad, inverse_time_s, control);
   if (length <= 0 || speed <= 0) return std::nullopt;
   return length / speed;
+}
+
+std::vector<double> tip_feeds_mm_per_s(const MachineProgram& program, const machine::Machine& machine) {
+  std::vector<double> out;
+  for (const nc::Move& move : program.moves_in_part().moves) out.push_back(move.feed_mm_per_s);
+  if (!program.turns()) return out;
+  ProgramJoints joints(machine, program.commanded());
+  while (!joints.done()) {
+    const MoveJoints& now = joints.next();
+    if (!now.turns()) continue;
+    const auto m = static_cast<std::uint32_t>(joints.index());
+    const auto time_s = programmed_time_s(program.commanded(), program.commanded().moves[m],
+                                          now.end_rad - now.start_rad, now.g93_time_s, machine.control);
+    out[m] = time_s ? program.part_path()->length_mm(m) / *time_s : 0;
+  }
+  return out;
 }
 
 std::vector<FeedMeaningUse> feed_meanings(const nc::Interpretation& program, const machine::Machine& machine) {

@@ -12,6 +12,8 @@
 
 namespace camber::kinematics {
 
+class MachineProgram;
+
 enum class FeedMeaning : std::uint8_t {
   linear,   ///< mm/min along X Y Z; rotary axes come along
   tip,      ///< mm/min of the tip in the part's frame (tool-centre-point control)
@@ -46,6 +48,9 @@ double feed_along_path(const nc::Interpretation& program, const nc::Move& move, 
 /// How long a feed move takes at the speed that F asks for; nothing where nothing moves or F is not given.
 std::optional<double> programmed_time_s(const nc::Interpretation& program, const nc::Move& move, const Vec3& turn_rad,
                                         double inverse_time_s, const machine::Control& control);
+
+/// Speed of the tip on the part that F asks for in each move, mm/s; 0: F is not given, or the tip stands.
+std::vector<double> tip_feeds_mm_per_s(const MachineProgram& program, const machine::Machine& machine);
 
 /// How many feed moves have a meaning, and the line of the first.
 struct FeedMeaningUse {

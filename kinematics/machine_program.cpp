@@ -203,4 +203,29 @@ void refuse_rotary_motion(const MachineProgram& program, const std::string& what
          fmt::format("{}, but rotary axes turn here; a program of X, Y and Z alone was expected", what), diagnostics);
 }
 
+std::vector<bool> turning_moves(const MachineProgram& program) {
+  std::vector<bool> out;
+  if (const PartPath* path = program.part_path())
+    for (std::uint32_t m = 0; m < program.moves_in_part().moves.size(); ++m) out.push_back(path->turn_rad(m) > 0);
+  return out;
+}
+
+std::vector<nc::MoveEdit> edits_of_text(const MachineProgram& program, std::vector<nc::MoveEdit> edits) {
+  const PartPath* path = program.part_path();
+  if (!path) return edits;
+  for (nc::MoveEdit& edit : edits) {
+    const auto turn_back = [&](std::optional<Vec3>& place) {
+      if (place) place = path->text_mm(edit.move, *place);
+    };
+    assert(edit.via.empty() || path->turn_rad(edit.move) == 0);
+    for (nc::ViaPoint& via : edit.via) {
+      via.point_mm = path->text_mm(edit.move, via.point_mm).value_or(via.point_mm);
+      turn_back(via.center_mm);
+    }
+    turn_back(edit.end_mm);
+    turn_back(edit.center_mm);
+  }
+  return edits;
+}
+
 }  // namespace camber::kinematics

@@ -9,6 +9,7 @@
 #include "base/tool_pose.h"
 #include "kinematics/part_path.h"
 #include "machine/job_file.h"
+#include "nc/emit.h"
 #include "nc/interpreter.h"
 #include "nc/program.h"
 
@@ -91,5 +92,11 @@ void check_on_part(const MachineProgram& program, Diagnostics& diagnostics);
 
 /// Error [rotary-motion] for commands that read three axes alone; `what` begins the message ("adapt chooses feeds").
 void refuse_rotary_motion(const MachineProgram& program, const std::string& what, Diagnostics& diagnostics);
+
+/// One per move: rotary axes turn in it. Such a move is not split, since its pieces would need their own angles. Empty
+/// without rotary motion.
+std::vector<bool> turning_moves(const MachineProgram& program);
+/// Edits of a program's moves in the coordinates of its text, with the angles of the rotary axes as they are.
+std::vector<nc::MoveEdit> edits_of_text(const MachineProgram& program, std::vector<nc::MoveEdit> edits);
 
 }  // namespace camber::kinematics

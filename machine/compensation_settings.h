@@ -21,9 +21,10 @@ enum class Reference {
 
 /// Part of a program that a compensation may change.
 enum class Lever : std::uint8_t {
-  shift,  ///< points of the path
-  feed,   ///< F words, where the error that no shift takes away exceeds the tolerance
-  passes  ///< runs of cuts that are made twice, where it does
+  shift,     ///< points of the path
+  feed,      ///< F words, where the error that no shift takes away exceeds the tolerance
+  passes,    ///< runs of cuts that are made twice, where it does
+  allowance  ///< the passes before, so that they leave as little as they can
 };
 
 /// Where the rounds of a compensation end.
@@ -49,19 +50,20 @@ struct CompensationSettings {
   double half_width_um() const { return profile_um ? ((*profile_um)[1] - (*profile_um)[0]) / 2 : tolerance_um; }
   std::vector<Lever> levers;  ///< shift is always among them; empty: shift, and feed where F words can be changed
   bool has(Lever lever) const {
-    return levers.empty() ? lever != Lever::passes : std::ranges::find(levers, lever) != levers.end();
+    return levers.empty() ? lever == Lever::shift || lever == Lever::feed
+                          : std::ranges::find(levers, lever) != levers.end();
   }
   /// Extra machine time for feed and passes: the least error within it. Not given: as much as the tolerance takes, up
   /// to 10 % where the job does not name its levers, else to 200 %.
   std::optional<double> time_budget_percent;
   double min_feed_percent = 20;                 ///< least feed, percent of the programmed one; below it edges rub
-  double pass_allowance_mm = 0;                 ///< what the first of two passes leaves; 0: chosen
+  double pass_allowance_mm = 0;                 ///< what the first of two passes, or the one before, leaves; 0: chosen
   double max_angle_growth_rad = 3 * kPi / 180;  ///< between blocks of the path
   Operations operations;                        ///< simulated moves to compensate; none given: the finishing moves
   std::optional<Vec3> work_offset_mm;           ///< program zero in machine coordinates, for the travel limits
 };
 
-inline constexpr std::string_view kWantedLevers = "a list of \"shift\", \"feed\" and \"passes\"";
+inline constexpr std::string_view kWantedLevers = "a list of \"shift\", \"feed\", \"passes\" and \"allowance\"";
 
 struct LeverNames {
   std::vector<Lever> levers;

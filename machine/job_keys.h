@@ -12,7 +12,7 @@ inline constexpr std::array<std::string_view, 7> kToolTypeWords{"ball",         
 inline constexpr std::array<std::string_view, 2> kCouplingWords{"rigid", "static"};
 inline constexpr std::array<std::string_view, 2> kReferenceWords{"commanded", "machine"};
 inline constexpr std::array<std::string_view, 2> kGoalWords{"best", "tolerance"};
-inline constexpr std::array<std::string_view, 3> kLeverWords{"shift", "feed", "passes"};
+inline constexpr std::array<std::string_view, 4> kLeverWords{"shift", "feed", "passes", "allowance"};
 inline constexpr std::array<std::string_view, 2> kAdaptLeverWords{"feed", "speed"};
 inline constexpr std::array<std::string_view, 3> kCollisionsWords{"error", "warning", "off"};
 inline constexpr std::array<std::string_view, 2> kUnitWords{"mm", "inch"};

@@ -361,6 +361,8 @@ void add_predict_and_compensate(py::module_& module) {
                         .def_readonly("time_points", &CompensateResult::time_points)
                         .def_readonly("repeated", &CompensateResult::repeated)
                         .def_readonly("pass_allowance_mm", &CompensateResult::pass_allowance_mm)
+                        .def_readonly("given_allowance_mm", &CompensateResult::given_allowance_mm)
+                        .def_readonly("allowance_mm", &CompensateResult::allowance_mm)
                         .def_readonly("stop", &CompensateResult::stop)
                         .def_readonly("blocks_before", &CompensateResult::blocks_before)
                         .def_readonly("blocks_after", &CompensateResult::blocks_after)

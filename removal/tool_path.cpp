@@ -312,4 +312,23 @@ HoleCount count_holes(const nc::Interpretation& program, const std::vector<HoleM
   return count;
 }
 
+StampPath stamps_where(const StampPath& path, const std::function<bool(std::size_t)>& keep) {
+  StampPath out;
+  for (const ToolRun& run : path.runs) {
+    bool open = false;
+    for (std::size_t k = run.from; k < run.from + run.count; ++k) {
+      if (!keep(k)) {
+        open = false;
+        continue;
+      }
+      if (!open) out.runs.push_back({run.tool, out.stamps.size(), 0, run.kind});
+      out.stamps.push_back(path.stamps[k]);
+      out.stamps.back().first = out.stamps.back().first || !open;
+      ++out.runs.back().count;
+      open = true;
+    }
+  }
+  return out;
+}
+
 }  // namespace camber::removal

@@ -98,6 +98,9 @@ struct StampPath {
 /// the count is not known yet.
 using StampSink = std::function<void(const ToolRun& run, std::size_t number, const Stamp& stamp)>;
 
+/// The stamps that `keep` wants by their number, in runs of consecutive ones.
+StampPath stamps_where(const StampPath& path, const std::function<bool(std::size_t)>& keep);
+
 /// The same tooth passings on the programmed moves themselves, without servo lag and corner rounding: each stamp of
 /// milling stands where the programmed path is nearest to the axes, so that feed marks and cusps stay in step. Where
 /// the axes cut a corner, and at the ends of a cut, stamps no farther apart are added: the whole of every `selected`

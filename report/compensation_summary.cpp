@@ -55,8 +55,22 @@ Json causes(const compensate::CompensationResult& c) {
 
 Json limits(const compensate::CompensationResult& c) {
   Json out = Json::array();
-  for (const auto& limit : c.verdict.limits)
-    out.push_back({{"key", limit.key}, {"value", limit.value}, {"binds_no_more_at", limit.binds_no_more_at}});
+  for (const auto& limit : c.verdict.limits) {
+    Json j = {{"key", limit.key},
+              {"value", limit.value},
+              {"given", limit.own},
+              {"binds_no_more_at", limit.binds_no_more_at},
+              {"count", limit.count},
+              {"line", limit.line.given},
+              {"emitted_line", limit.line.emitted},
+              {"sentence", compensate::sentence(limit)}};
+    if (const compensate::LimitEffect& effect = limit.effect; effect.known())
+      j["effect"] = {{"p95_um", effect.with_um},
+                     {"p95_without_um", effect.without_um},
+                     {"first_line", effect.first_line},
+                     {"last_line", effect.last_line}};
+    out.push_back(std::move(j));
+  }
   return out;
 }
 
@@ -194,6 +208,8 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["rounds"] = rounds(c);
   j["time_points"] = time_points(c);
   j["passes"] = passes_json(c);
+  if (c.pass_before)
+    j["pass_before"] = {{"given_um", 1000 * c.pass_before->given_mm}, {"left_um", 1000 * c.pass_before->left_mm}};
   j["best_round"] = c.best;
   j["stop"] = compensate::to_string(c.verdict.stop);
   j["into_part"] = {{"within_tolerance", c.safety.within_part},
@@ -310,6 +326,9 @@ std::string levers_text(const compensate::CompensationResult& c) {
       fmt::format("levers used: shift to {:.1f} um ({} blocks)", 1000 * c.path.max_shift_mm, c.emitted.blocks_changed);
   if (best.slowed > 0) out += fmt::format(", {} feed changes", best.slowed);
   if (best.repeated > 0) out += fmt::format(", {} runs cut twice", best.repeated);
+  if (c.pass_before)
+    out += fmt::format(", the passes before leave {:.0f} instead of {:.0f} um", 1000 * c.pass_before->left_mm,
+                       1000 * c.pass_before->given_mm);
   const double extra_s = c.figures.feed_after.time_s - c.figures.feed_before.time_s;
   const double percent = c.figures.feed_before.time_s > 0 ? 100 * extra_s / c.figures.feed_before.time_s : 0;
   out += fmt::format("; {:+.1f} s ({:+.1f} %)\n", extra_s, percent);
@@ -424,8 +443,6 @@ std::string compensate_text(const compensate::CompensationResult& c, double comp
                  "machine time {:.1f} s before, {:.1f} s after; computed in {:.1f} s\n",
                  1000 * c.path.max_shift_mm, c.emitted.blocks_changed, c.emitted.blocks_before, c.emitted.blocks_after,
                  c.figures.feed_before.time_s, c.figures.feed_after.time_s, compute_s);
-  const std::size_t limited = c.rounds[c.best].limited_points;
-  if (limited > 0) fmt::format_to(std::back_inserter(out), "{} points of the path reached max_shift_mm\n", limited);
   for (const auto& limit : c.verdict.limits) out += compensate::sentence(limit) + "\n";
   return out;
 }

@@ -27,6 +27,25 @@ TextTable split_table(const compensate::CompensationResult& c) {
   return table;
 }
 
+TextTable limits_table(const std::vector<compensate::BindingLimit>& limits) {
+  TextTable table{"Limits that bind",
+                  {"", "value", "binds no more at", "points held", "line", "95th percentile, µm", "without it, µm"},
+                  {},
+                  {}};
+  for (const compensate::BindingLimit& limit : limits) {
+    const compensate::LimitEffect& effect = limit.effect;
+    table.rows.push_back({limit.key, fmt::format("{:.3g}{}", limit.value, limit.own ? "" : " (default)"),
+                          fmt::format("{:.3g}", limit.binds_no_more_at), std::to_string(limit.count),
+                          limit.line.given > 0 ? std::to_string(limit.line.given) : "",
+                          effect.known() ? um(effect.with_um) : "", effect.known() ? um(effect.without_um) : ""});
+  }
+  table.note =
+      "The last two columns: predicted for the stretch of the path that the limit holds back most; of a depth limit "
+      "for "
+      "the whole program.";
+  return table;
+}
+
 std::string place(const Vec3& p) { return fmt::format("X{:.3f} Y{:.3f} Z{:.3f}", p.x(), p.y(), p.z()); }
 
 TextTable depth_table(const compensate::CompensationResult& c) {
@@ -58,6 +77,7 @@ TextTable band_table(const compensate::Band& band) {
 
 std::vector<TextTable> compensation_tables(const compensate::CompensationResult& c) {
   std::vector<TextTable> tables{split_table(c), depth_table(c)};
+  if (!c.verdict.limits.empty()) tables.push_back(limits_table(c.verdict.limits));
   if (c.uncertainty.band) tables.push_back(band_table(*c.uncertainty.band));
   return tables;
 }

@@ -16,8 +16,8 @@ struct CompensateOptions {
   std::string measured{};                  ///< points measured on a part, CSV; empty: none
   std::string measured_program{};          ///< program that the measured part was cut with; empty: the job's program
   std::vector<double> check_voxels_mm{};   ///< predict both programs again on these grids
-  /// Levers in place of [compensation] levers: "shift" and of "feed" and "passes" those wanted; empty: the
-  /// job's.
+  /// Levers in place of [compensation] levers: "shift" and of "feed", "passes" and "allowance" those wanted; empty:
+  /// the job's.
   std::vector<std::string> levers{};
   /// Limit of the levers feed and passes ([compensation] levers): the least error within so much more machine time,
   /// in percent; not given: as much as the tolerance takes.
@@ -85,6 +85,8 @@ struct CompensateResult {
   bool written = false;                           ///< there is an output, and the program is in it
   std::vector<Diagnostic> unwritten{};            ///< see CompensateOptions::throw_if_unwritten
   std::vector<std::string> unknown_parameters{};  ///< names in CompensateOptions::uncertainty that are ignored
+  /// Allowance that the passes before leave, as given and as emitted; 0: they are as given (lever "allowance").
+  double given_allowance_mm = 0, allowance_mm = 0;
 };
 
 /// Throws InputError, BeyondModel, Cancelled.

@@ -112,10 +112,11 @@ TEST(PredictFiveAxes, SaysWhatIsMissing) {
             "control, were expected [not-read]\n    G2 X4. Y4. I4. J0 C100. F100\n    ^\n");
   write_job(folder, rows());
   folder.write("adapt.toml", tests::file_text(folder / "job.toml") +
-                                 "[adapt]\nfeed_mm_per_min = [300, 3000]\nlimits = { force_N = 50.0 }\n");
+                                 "[adapt]\nfeed_mm_per_min = [300, 3000]\nlevers = [\"feed\", \"speed\"]\n"
+                                 "limits = { force_N = 50.0, chatter_margin = 0.8 }\n");
   EXPECT_NE(error_of(rows(), "adapt adapt.toml -o out.nc")
-                .find("p.nc:8:1: error: adapt chooses feeds of X, Y and Z, but rotary axes turn here; a program of X, "
-                      "Y and Z alone was expected [rotary-motion]\n    A20. C90.\n    ^\n"),
+                .find("p.nc:8:1: error: chatter_margin in [adapt] limits changes spindle speeds, but rotary axes turn "
+                      "here; a program of X, Y and Z alone was expected [rotary-motion]\n    A20. C90.\n    ^\n"),
             std::string::npos);
 }
 

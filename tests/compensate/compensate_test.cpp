@@ -302,6 +302,45 @@ TEST(Compensate, HoldsToTheLargestShift) {
   EXPECT_LE(c.safety.without_bending.deepest_um, 4.0 + 1.0);  // and what a grid of 0.15 mm shows of cusps
 }
 
+/// Whether a limit is named by its place, and with the effect that a run without it has.
+TEST(Compensate, NamesTheLimitOfTheShiftWithWhatARunWithoutItLeaves) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  Diagnostics diagnostics;
+  job.compensation.max_shift_mm = 0.004;
+  const CompensationResult held = compensate(job, diagnostics, {});
+  ASSERT_EQ(held.verdict.limits.size(), 1u);
+  const BindingLimit& limit = held.verdict.limits[0];
+  EXPECT_EQ(limit.key, "max_shift_mm");
+  EXPECT_GT(limit.count, 50u) << "of about 23 rows of three points each";
+  EXPECT_GE(limit.effect.first_line, 9u);
+  EXPECT_LE(limit.effect.first_line, limit.line.given);
+  EXPECT_LE(limit.line.given, limit.effect.last_line);
+  EXPECT_LE(limit.effect.last_line - limit.effect.first_line, 2u) << "one row of three blocks is cut again";
+  // The whole program is alike in all its rows: with the value that is named it comes to what the stretch says.
+  job.compensation.max_shift_mm = limit.binds_no_more_at;
+  const CompensationResult free = compensate(job, diagnostics, {});
+  EXPECT_TRUE(free.verdict.limits.empty()) << sentence(free.verdict.limits[0]);
+  EXPECT_NEAR(limit.effect.without_um, free.figures.after_um.p95, 0.5 * free.figures.after_um.p95);
+  EXPECT_NEAR(limit.effect.with_um, held.figures.after_um.p95, 0.3 * held.figures.after_um.p95);
+}
+
+TEST(Compensate, NamesTheLimitOfAnglesOnlyWhereItBinds) {
+  const tests::TempFolder folder;
+  machine::Job job = plane_job(folder);
+  Diagnostics diagnostics;
+  EXPECT_TRUE(compensate(job, diagnostics, {}).verdict.limits.empty());
+  job.compensation.max_angle_growth_rad = 0.0005;
+  const CompensationResult held = compensate(job, diagnostics, {});
+  ASSERT_EQ(held.verdict.limits.size(), 1u);
+  const BindingLimit& limit = held.verdict.limits[0];
+  EXPECT_EQ(limit.key, "max_angle_growth_deg");
+  EXPECT_GT(limit.count, 0u);
+  EXPECT_GT(limit.line.given, 8u);
+  EXPECT_GT(limit.effect.with_um, limit.effect.without_um);
+  EXPECT_GT(limit.binds_no_more_at, limit.value);
+}
+
 TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth) {
   const tests::TempFolder folder;
   machine::Job job = plane_job(folder);
@@ -317,6 +356,15 @@ TEST(Compensate, TheGuardLiftsWhatIsCutTooDeepAndTellsTheTruth) {
   EXPECT_EQ(guarded.rounds.size(), free.rounds.size() + 1) << "one round, since its lifts are weighed beforehand";
   EXPECT_LT(guarded.safety.after.gouge_depth_p999_um, 0.9 * free.safety.after.gouge_depth_p999_um);
   EXPECT_EQ(guarded.safety.within_part, guarded.safety.after.gouge_depth_p999_um <= job.compensation.max_overcut_um);
+  ASSERT_EQ(guarded.verdict.limits.size(), 1u);
+  const BindingLimit& limit = guarded.verdict.limits[0];
+  EXPECT_EQ(limit.key, "max_overcut_um");
+  std::size_t below = 0;
+  for (const auto& p : free.surfaces.after) below += p.error_mm < -limit.value / 1000 ? 1 : 0;
+  EXPECT_EQ(limit.count, below) << "of the round before the guard, which the run without it has written";
+  EXPECT_DOUBLE_EQ(limit.effect.without_um, free.figures.after_um.p95);
+  EXPECT_DOUBLE_EQ(limit.effect.with_um, guarded.figures.after_um.p95);
+  EXPECT_EQ(limit.line.given, free.safety.after.line.given);
   double deepest = 0;
   for (const auto& p : guarded.surfaces.after) deepest = std::max(deepest, -1000 * p.error_mm);
   EXPECT_NEAR(std::max(guarded.safety.after.deepest_um, guarded.safety.others.deepest_um), deepest, 1e-9);

@@ -112,6 +112,8 @@ TEST(Causes, HaveNoRemedyThatWasTried) {
   };
   EXPECT_EQ(remedies(Cause::bow, {}), (Words{"a second cut (lever \"passes\")", "a shorter tool", "a lower feed"}));
   EXPECT_EQ(remedies(Cause::bow, {.feeds = true, .second_cuts = true}), Words{"a shorter tool"});
+  EXPECT_EQ(remedies(Cause::bow, {.feeds = true, .second_cuts = true, .pass_before = false}),
+            (Words{"less stock left by the pass before (lever \"allowance\")", "a shorter tool"}));
   EXPECT_EQ(remedies(Cause::correctable, {}), Words{"more rounds (max_rounds)"});
   EXPECT_EQ(remedies(Cause::correctable, {.rounds = true}), Words{});
   EXPECT_EQ(remedies(Cause::short_range, {.feeds = true}), Words{});
@@ -124,6 +126,13 @@ TEST(Causes, NameTheFigureAtWhichALimitNoLongerBinds) {
       depth{.key = kOvercutKey, .value = 4.2, .binds_no_more_at = 6.5, .own = false};
   EXPECT_EQ(sentence(shift), "max_shift_mm = 0.1 binds; from 0.134 on it would not");
   EXPECT_EQ(sentence(depth), "max_overcut_um = 4.2 (default) binds; from 6.5 on it would not");
+  BindingLimit placed = shift;
+  placed.count = 34;
+  placed.line = {12, 15};
+  placed.effect = {5.1, 3.2, 10, 14};
+  EXPECT_EQ(sentence(placed),
+            "max_shift_mm = 0.1 binds at 34 points of the path, most in line 12 (15 as emitted); from 0.134 on it "
+            "would not; without it the 95th percentile of lines 10 to 14 would be 3.20 instead of 5.10 um");
   const Tried tried{.feeds = true, .limits = {shift, depth}};
   EXPECT_EQ(remedies_of({.cause = Cause::limited}, tried),
             (std::vector<std::string>{"max_shift_mm = 0.134 (0.1 now)", "a shorter tool"}));

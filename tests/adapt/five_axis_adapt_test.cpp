@@ -1,0 +1,55 @@
+// Feeds by load where rotary axes turn: the dome of samples/13-dome, by the tip and by positions of the axes.
+#include <cmath>
+#include <regex>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "adapt/adapt.h"
+#include "test_paths.h"
+
+namespace camber::adapt {
+namespace {
+
+machine::Job dome_job(const std::string& name, double deflection_um, Diagnostics& diagnostics) {
+  machine::Job job = machine::read_job(CAMBER_SOURCE_DIR "/samples/13-dome/" + name, diagnostics);
+  job.simulation.voxel_mm = 0.2;
+  job.simulation.coupling = machine::Coupling::rigid;
+  job.adapt.emplace();
+  job.adapt->limits.deflection_mm = deflection_um / 1000;
+  job.adapt->lowest_feed_mm_per_s = 1;
+  return job;
+}
+
+/// The text without its F words.
+std::string without_feeds(const std::string& text) {
+  static const std::regex feed(R"( ?F[0-9.]+)");
+  return std::regex_replace(text, feed, "");
+}
+
+TEST(FiveAxisAdapt, KeepsALimitByTheTipAndByTheAxesInTheSameTime) {
+  constexpr double kLimit_um = 6;  // of which the programmed feed makes more
+  constexpr double kSameTime = 0.04;
+  double time_s[2] = {};
+  int i = 0;
+  for (const char* name : {"job.toml", "job_axes.toml"}) {
+    Diagnostics diagnostics;
+    const machine::Job job = dome_job(name, kLimit_um, diagnostics);
+    const AdaptResult r = adapt(job, diagnostics, {});
+    ASSERT_EQ(r.loads.size(), 1u);
+    EXPECT_GT(r.loads[0].max_before, 1.1 * kLimit_um / 1000) << name;
+    EXPECT_LT(r.loads[0].max_after, kOverLimit * kLimit_um / 1000) << name;
+    EXPECT_TRUE(r.good) << name;
+    EXPECT_GT(r.time_after_s, 1.02 * r.time_before_s) << name;
+    time_s[i++] = r.time_after_s;
+    // Blocks that turn are never split; nothing but F words is new in them.
+    const SourceText given = SourceText::read(job.program), emitted("", r.text);
+    ASSERT_EQ(given.line_count(), emitted.line_count()) << name;
+    for (std::size_t line = 1; line <= given.line_count(); ++line)
+      ASSERT_EQ(without_feeds(std::string(given.line(line))), without_feeds(std::string(emitted.line(line)))) << name;
+  }
+  EXPECT_NEAR(time_s[0] / time_s[1], 1, kSameTime) << "the same dome, whatever F counts";
+}
+
+}  // namespace
+}  // namespace camber::adapt
