@@ -367,6 +367,20 @@ void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const
   fit = fit_limits(data, base, std::move(parameters), iterations, false);
 }
 
+/// Whether a block that follows the stop of another one waits for a period: as it is with this kind of control, unless
+/// the other way is better.
+void choose_starts(FitFeedResult& result, LimitFit& fit, const std::vector<TimedLines>& data) {
+  bool& starts = result.machine.control.starts_on_period;
+  if (blocks_overlap(data, result.machine)) return;
+  if (!choose(
+          fit, data, {starts ? 0.0 : 1.0}, [](Machine& m, double v) { m.control.starts_on_period = v > 0; },
+          kListIterations))
+    return;
+  starts = fit.machine.control.starts_on_period;
+  result.parameters.push_back({"control.starts_on_period", starts ? 1.0 : 0.0, "1", std::nullopt,
+                               "1: a block that follows a stop waits for a period", true});
+}
+
 /// Which program of camber protocol has what a parameter shows in.
 std::string_view what_tells(std::string_view name) {
   if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
@@ -654,6 +668,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   LimitFit limits = choose_law(result, data, {traced_accelerations(traces, rotary), held_accelerations(runs)},
                                options.max_iterations / 4, options.update);
   result.machine = base_with_law(base_of_all, limits.whole);
+  choose_starts(result, limits, data);
   refine_block_time(limits, data, result.machine, options.max_iterations / 3);
   const double period = result.machine.control.period_s;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend) {
