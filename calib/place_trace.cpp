@@ -11,17 +11,24 @@ namespace {
 
 using feedmodel::PathPlace;
 
-constexpr double kNearStartMm = 0.5;   // a start is looked for within this distance of the path
-constexpr double kAheadMm = 0.5;       // how far ahead of the axes' way a place is looked for
-constexpr double kAheadFactor = 1.3;   // times that way: corners are cut
-constexpr double kDetour = 0.05;       // what a millimetre along the path counts beside one off it
+constexpr double kNearStartMm = 0.5;  // a start is looked for within this distance of the path
+constexpr double kAheadMm = 0.5;      // how far ahead of the axes' way a place is looked for
+constexpr double kAheadFactor = 1.3;  // times that way: corners are cut
+constexpr double kAheadTime = 1.25;   // times the way at the programmed feed: overrides
+constexpr double kDetour = 0.02;      // what a millimetre along the path counts beside one off it
+constexpr std::size_t kMaxWays = 12;
+constexpr double kHopelessMm = 5.0;  // a way that costs this much more than the best is given up
+constexpr double kSamePlaceMm = 0.02;
 constexpr double kStillMm = 2e-3;      // from sample to sample
 constexpr double kMaxOffPathMm = 0.5;  // of 19 in 20 samples
 constexpr double kLostMm = 5.0;        // a start from which a sample is this far off is wrong
 constexpr std::size_t kTrialSamples = 400;
 constexpr std::size_t kMaxStarts = 4000;
 constexpr double kSameExtentMm = 1.0;
-constexpr double kMinEndSpeed = 0.1;  // of the piece's mean: slower, the time of its end is not known well
+constexpr double kSpeedChange = 0.25;  // of a sample, per relative change of speed: what a time is known to
+constexpr double kLeastKnown = 0.25;   // of a sample: piece ends are known to that, or better
+constexpr double kPlaceMm = 0.02;      // what a place is known to along the path
+constexpr double kMaxPieces = 3;       // times the length that is asked for, where no better end comes
 
 bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc; }
 
@@ -33,7 +40,12 @@ class Follower {
  public:
   Follower(const ServoTrace& trace, const nc::Interpretation& program, const Vec3& offset_mm)
       : trace_(trace), program_(program), offset_mm_(offset_mm) {
-    for (const nc::Move& move : program.moves) length_mm_.push_back(move.reference ? 0 : nc::length_mm(program, move));
+    double from_mm = 0;
+    for (const nc::Move& move : program.moves) {
+      from_mm_.push_back(from_mm);
+      length_mm_.push_back(move.reference ? 0 : nc::length_mm(program, move));
+      from_mm += length_mm_.back();
+    }
   }
 
   Vec3 at(std::size_t k) const { return position(trace_, k) + offset_mm_; }
@@ -49,45 +61,87 @@ class Follower {
     return found;
   }
 
-  /// The place of the next sample, after the axes went `went_mm`.
-  PathPlace next(const PathPlace& from, const Vec3& point_mm, double went_mm) const {
-    PathPlace best;
-    double least = std::numeric_limits<double>::infinity(), passed_mm = -from.u * length_mm_[from.move];
-    const double most_mm = kAheadMm + kAheadFactor * went_mm;
-    for (std::uint32_t m = from.move; m < program_.moves.size(); ++m) {
-      if (!program_.moves[m].reference && program_.moves[m].kind != nc::MoveKind::dwell) {
-        const PathPlace here = feedmodel::closest_on_move(program_, m, point_mm, m == from.move ? from.u : 0.0, 1);
-        const double way_mm = passed_mm + here.u * length_mm_[m];
-        const double score = here.distance_mm + kDetour * std::abs(way_mm - went_mm);
-        if (score < least) {
-          least = score;
-          best = here;
-        }
-      }
-      passed_mm += length_mm_[m];
-      // The way to or from a reference point is not known; the axes may be anywhere after it.
-      if (passed_mm > most_mm && !program_.moves[m].reference) break;
-    }
-    return std::isfinite(least) ? best : from;
-  }
-
-  /// Follows the samples from `first` on; returns the mean of the distances, infinite where they lead away.
-  double follow(PathPlace place, std::size_t first, std::size_t end, std::vector<PathPlace>* out) const {
-    double sum = 0;
+  /// Follows the samples from `first` on; returns the mean cost of a sample, infinite where they lead away. Where
+  /// samples are far apart several ways may lead to the next one: the best few are kept until one proves to be right.
+  double follow(const PathPlace& start, std::size_t first, std::size_t end, std::vector<PathPlace>* out) const {
+    std::vector<Layer> layers;
+    Layer layer{{start, start.distance_mm, 0}};
     for (std::size_t k = first; k < end; ++k) {
-      if (k > first) place = next(place, at(k), (at(k) - at(k - 1)).norm());
-      if (!out && place.distance_mm > kLostMm) return std::numeric_limits<double>::infinity();
-      sum += place.distance_mm;
-      if (out) out->push_back(place);
+      if (k > first) layer = next(layer, k);
+      if (!out && layer.front().place.distance_mm > kLostMm) return std::numeric_limits<double>::infinity();
+      if (out) layers.push_back(layer);
     }
-    return sum / static_cast<double>(end - first);
+    const double cost = layer.front().cost;
+    if (out) {
+      std::vector<PathPlace> back;
+      std::size_t at = 0;
+      for (auto l = layers.rbegin(); l != layers.rend(); ++l) {
+        back.push_back((*l)[at].place);
+        at = (*l)[at].parent;
+      }
+      out->insert(out->end(), back.rbegin(), back.rend());
+    }
+    return cost / static_cast<double>(end - first);
   }
 
  private:
+  /// A way that may have led to a sample; `parent`: of the layer before.
+  struct Way {
+    PathPlace place;
+    double cost = 0;
+    std::size_t parent = 0;
+  };
+  using Layer = std::vector<Way>;  ///< of one sample, the best first
+
+  /// The places to which the axes may have come from one place until sample k. The moves that are looked at: as far as
+  /// the axes went, and as far as the programmed feed leads.
+  void add_ways(const Way& from, std::size_t parent, std::size_t k, Layer& out) const {
+    const Vec3 point_mm = at(k);
+    const double went_mm = (point_mm - at(k - 1)).norm(), most_mm = kAheadMm + kAheadFactor * went_mm;
+    const double most_s = kAheadTime * (trace_.t_s[k] - trace_.t_s[k - 1]);
+    double passed_mm = -from.place.u * length_mm_[from.place.move], passed_s = 0;
+    for (std::uint32_t m = from.place.move; m < program_.moves.size(); ++m) {
+      const nc::Move& move = program_.moves[m];
+      if (!move.reference && move.kind != nc::MoveKind::dwell) {
+        const double from_u = m == from.place.move ? from.place.u : 0.0;
+        const PathPlace here = feedmodel::closest_on_move(program_, m, point_mm, from_u, 1);
+        const double way_mm = passed_mm + here.u * length_mm_[m];
+        // The way is at least as long as its chord.
+        const double cost = here.distance_mm + (way_mm < went_mm ? went_mm - way_mm : kDetour * (way_mm - went_mm));
+        out.push_back({here, from.cost + cost, parent});
+        if (is_feed(move) && move.feed_mm_per_s > 0) passed_s += (1 - from_u) * length_mm_[m] / move.feed_mm_per_s;
+      }
+      passed_mm += length_mm_[m];
+      // The way to or from a reference point is not known; the axes may be anywhere after it.
+      if (passed_mm > most_mm && passed_s > most_s && !move.reference) break;
+    }
+  }
+
+  Layer next(const Layer& from, std::size_t k) const {
+    Layer all, best;
+    for (std::size_t i = 0; i < from.size(); ++i) add_ways(from[i], i, k, all);
+    if (all.empty()) {
+      for (std::size_t i = 0; i < from.size(); ++i) best.push_back({from[i].place, from[i].cost, i});
+      return best;
+    }
+    std::ranges::stable_sort(all, {}, &Way::cost);
+    const auto known = [&](const Way& way) {
+      return std::ranges::any_of(
+          best, [&](const Way& b) { return std::abs(along_mm(b.place) - along_mm(way.place)) < kSamePlaceMm; });
+    };
+    for (const Way& way : all) {
+      if (best.size() == kMaxWays || way.cost > all.front().cost + kHopelessMm) break;
+      if (!known(way)) best.push_back(way);
+    }
+    return best;
+  }
+
+  double along_mm(const PathPlace& place) const { return from_mm_[place.move] + place.u * length_mm_[place.move]; }
+
   const ServoTrace& trace_;
   const nc::Interpretation& program_;
   Vec3 offset_mm_;
-  std::vector<double> length_mm_;
+  std::vector<double> length_mm_, from_mm_;  ///< of each move; from_mm_: along the path
 };
 
 std::size_t first_motion(const ServoTrace& trace) {
@@ -166,9 +220,9 @@ void set_lines(ServoTrace& trace, const nc::Interpretation& program, const Place
 
 namespace {
 
-/// Time and speed at the end of each move, where the trace passes it; NaN elsewhere.
+/// Time at the end of each move, where the trace passes it, and what it is known to; NaN elsewhere.
 struct Passages {
-  std::vector<double> t_s, speed_mm_per_s;
+  std::vector<double> t_s, sigma_s;
 };
 
 Passages passages_of(const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed) {
@@ -179,17 +233,25 @@ Passages passages_of(const ServoTrace& trace, const nc::Interpretation& program,
     return from_mm[p.move] + p.u * (from_mm[p.move + 1] - from_mm[p.move]);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Passages out{std::vector<double>(program.moves.size(), nan), std::vector<double>(program.moves.size(), 0)};
+  Passages out{std::vector<double>(program.moves.size(), nan), std::vector<double>(program.moves.size(), nan)};
   for (const Stretch& s : trace.stretches) {
+    const auto speed_into = [&](std::size_t k) {
+      return (along(placed.place[k]) - along(placed.place[k - 1])) / (trace.t_s[k] - trace.t_s[k - 1]);
+    };
     for (std::size_t k = s.first + 1; k < s.end; ++k) {
-      const double a = along(placed.place[k - 1]), b = along(placed.place[k]);
+      const double a = along(placed.place[k - 1]), b = along(placed.place[k]), step_s = trace.t_s[k] - trace.t_s[k - 1];
       if (b <= a) continue;
-      const double speed = (b - a) / (trace.t_s[k] - trace.t_s[k - 1]);
+      const double speed = speed_into(k);
+      double change = 0;
+      if (k > s.first + 1) change = std::abs(speed - speed_into(k - 1));
+      if (k + 1 < s.end) change = std::max(change, std::abs(speed_into(k + 1) - speed));
+      // At an even acceleration a place is at most change step^2 / (8 step) off; a corner is passed unevenly.
+      const double sigma_s = step_s * std::min(kLeastKnown, kSpeedChange * change / speed) + kPlaceMm / speed;
       for (std::uint32_t m = placed.place[k - 1].move; m < placed.place[k].move + 1U; ++m) {
         const double end = from_mm[m + 1];
         if (end < a || end >= b) continue;
         out.t_s[m] = trace.t_s[k - 1] + (end - a) / speed;
-        out.speed_mm_per_s[m] = speed;
+        out.sigma_s[m] = sigma_s;
       }
     }
   }
@@ -202,8 +264,7 @@ std::vector<TimedStretch> placed_stretches(
     const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, double piece_s,
     const std::function<std::optional<double>(double from_s, double to_s)>& override_between) {
   const Passages passages = passages_of(trace, program, placed);
-  // A place is known to a fraction of a sample where the axes keep their speed.
-  const double sigma_s = trace.period_s / 4;
+  const double worst_s = kLeastKnown * trace.period_s;
   std::vector<TimedStretch> out;
   for (const FeedStretch& whole : feed_stretches(program)) {
     std::optional<std::size_t> from;  // the piece begins at the end of this move
@@ -222,10 +283,9 @@ std::vector<TimedStretch> placed_stretches(
       const double time_s = passages.t_s[m] - passages.t_s[*from];
       if (time_s < piece_s) continue;
       FeedStretch piece = piece_of(whole, program, *from + 1, m + 1);
-      const double mean = programmed_length_mm(piece, program) / time_s;
-      if (passages.speed_mm_per_s[m] < kMinEndSpeed * mean) continue;
+      if (passages.sigma_s[m] > worst_s && time_s < kMaxPieces * piece_s) continue;
       const auto feed = override_between ? override_between(passages.t_s[*from], passages.t_s[m]) : 1.0;
-      if (feed) out.push_back({piece, time_s, sigma_s, *feed});
+      if (feed) out.push_back({piece, time_s, std::hypot(passages.sigma_s[*from], passages.sigma_s[m]), *feed});
       from = m;
     }
   }
