@@ -35,6 +35,7 @@ constexpr double kSettledFraction = 1e-3;   // gain of cost under which a richer
 void set_control_defaults(machine::Control& control) {
   // No control takes up two blocks in one period.
   if (control.block_time_s == 0) control.block_time_s = control.kind.min_segment_periods * control.period_s;
+  control.starts_on_period = control.kind.starts_on_period;
   if (control.corner.law != machine::CornerLaw::blend) return;
   if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.default_step_fraction;
   if (control.lookahead_blocks == 0) control.lookahead_blocks = control.kind.usual_lookahead_blocks;
