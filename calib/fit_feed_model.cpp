@@ -382,6 +382,20 @@ void choose_starts(FitFeedResult& result, LimitFit& fit, const std::vector<Timed
                                "1: a block that follows a stop waits for a period", true});
 }
 
+/// Whether the control waits at exact stops until the axes are in position: it does as the start file says, unless the
+/// traces have such stops and their times are those of a control that does not. Requires the drives.
+void set_waits(FitFeedResult& result, const std::vector<TimedLines>& data, double width_mm) {
+  Machine waits = result.machine;
+  waits.control.in_position_mm = width_mm;
+  const LimitCost with = cost_of(data, waits), without = cost_of(data, result.machine);
+  if (with.fitted + with.held_out <= without.fitted + without.held_out) {
+    result.machine = waits;
+    return;
+  }
+  result.parameters.push_back(
+      {"control.in_position_mm", machine::kNoLimit, "mm", std::nullopt, "the traces do not wait at exact stops", true});
+}
+
 /// Which program of camber protocol has what a parameter shows in.
 std::string_view what_tells(std::string_view name) {
   if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
@@ -685,7 +699,6 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   result.machine = limits.machine;
   add_limits(result, limits, base, !logged.empty());
   judge_logged(result, logged, limits.machine);
-  result.machine.control.in_position_mm = width_mm;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend)
     add_listed(result);
   add_angles(result);
@@ -705,6 +718,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
               "deg", drive);
     drives_converged = drives_converged && (!drive.moved || drive.converged);
   }
+  set_waits(result, data, width_mm);
   add_smoothing(result, runs, traces);
   std::vector<const nc::Interpretation*> programs;
   for (const FeedRun& run : runs) programs.push_back(&run.program);
