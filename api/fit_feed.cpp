@@ -54,7 +54,7 @@ calib::StretchRun& stretch_run(FeedRuns& runs, const std::string& name, const nc
 }
 
 /// Samples of a position log in a piece whose ends are known to a fraction of one.
-constexpr double kPieceSamples = 10;
+constexpr double kPieceSamples = 30;
 
 /// By the lines that a log names; where it names none, or too few, by its positions.
 std::vector<calib::TimedStretch> log_times(const calib::MachineLog& log, const nc::Interpretation& program) {

@@ -25,10 +25,7 @@ constexpr double kLostMm = 5.0;        // a start from which a sample is this fa
 constexpr std::size_t kTrialSamples = 400;
 constexpr std::size_t kMaxStarts = 4000;
 constexpr double kSameExtentMm = 1.0;
-constexpr double kSpeedChange = 0.25;  // of a sample, per relative change of speed: what a time is known to
-constexpr double kLeastKnown = 0.25;   // of a sample: piece ends are known to that, or better
-constexpr double kPlaceMm = 0.02;      // what a place is known to along the path
-constexpr double kMaxPieces = 3;       // times the length that is asked for, where no better end comes
+constexpr double kMinEndSpeed = 0.1;  // of the piece's mean: slower, the time of its end is not known well
 
 bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc; }
 
@@ -220,9 +217,9 @@ void set_lines(ServoTrace& trace, const nc::Interpretation& program, const Place
 
 namespace {
 
-/// Time at the end of each move, where the trace passes it, and what it is known to; NaN elsewhere.
+/// Time and speed at the end of each move, where the trace passes it; NaN elsewhere.
 struct Passages {
-  std::vector<double> t_s, sigma_s;
+  std::vector<double> t_s, speed_mm_per_s;
 };
 
 Passages passages_of(const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed) {
@@ -233,25 +230,17 @@ Passages passages_of(const ServoTrace& trace, const nc::Interpretation& program,
     return from_mm[p.move] + p.u * (from_mm[p.move + 1] - from_mm[p.move]);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Passages out{std::vector<double>(program.moves.size(), nan), std::vector<double>(program.moves.size(), nan)};
+  Passages out{std::vector<double>(program.moves.size(), nan), std::vector<double>(program.moves.size(), 0)};
   for (const Stretch& s : trace.stretches) {
-    const auto speed_into = [&](std::size_t k) {
-      return (along(placed.place[k]) - along(placed.place[k - 1])) / (trace.t_s[k] - trace.t_s[k - 1]);
-    };
     for (std::size_t k = s.first + 1; k < s.end; ++k) {
-      const double a = along(placed.place[k - 1]), b = along(placed.place[k]), step_s = trace.t_s[k] - trace.t_s[k - 1];
+      const double a = along(placed.place[k - 1]), b = along(placed.place[k]);
       if (b <= a) continue;
-      const double speed = speed_into(k);
-      double change = 0;
-      if (k > s.first + 1) change = std::abs(speed - speed_into(k - 1));
-      if (k + 1 < s.end) change = std::max(change, std::abs(speed_into(k + 1) - speed));
-      // At an even acceleration a place is at most change step^2 / (8 step) off; a corner is passed unevenly.
-      const double sigma_s = step_s * std::min(kLeastKnown, kSpeedChange * change / speed) + kPlaceMm / speed;
+      const double speed = (b - a) / (trace.t_s[k] - trace.t_s[k - 1]);
       for (std::uint32_t m = placed.place[k - 1].move; m < placed.place[k].move + 1U; ++m) {
         const double end = from_mm[m + 1];
         if (end < a || end >= b) continue;
         out.t_s[m] = trace.t_s[k - 1] + (end - a) / speed;
-        out.sigma_s[m] = sigma_s;
+        out.speed_mm_per_s[m] = speed;
       }
     }
   }
@@ -264,7 +253,8 @@ std::vector<TimedStretch> placed_stretches(
     const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, double piece_s,
     const std::function<std::optional<double>(double from_s, double to_s)>& override_between) {
   const Passages passages = passages_of(trace, program, placed);
-  const double worst_s = kLeastKnown * trace.period_s;
+  // A place is known to a fraction of a sample where the axes keep their speed.
+  const double sigma_s = trace.period_s / 4;
   std::vector<TimedStretch> out;
   for (const FeedStretch& whole : feed_stretches(program)) {
     std::optional<std::size_t> from;  // the piece begins at the end of this move
@@ -283,9 +273,10 @@ std::vector<TimedStretch> placed_stretches(
       const double time_s = passages.t_s[m] - passages.t_s[*from];
       if (time_s < piece_s) continue;
       FeedStretch piece = piece_of(whole, program, *from + 1, m + 1);
-      if (passages.sigma_s[m] > worst_s && time_s < kMaxPieces * piece_s) continue;
+      const double mean = programmed_length_mm(piece, program) / time_s;
+      if (passages.speed_mm_per_s[m] < kMinEndSpeed * mean) continue;
       const auto feed = override_between ? override_between(passages.t_s[*from], passages.t_s[m]) : 1.0;
-      if (feed) out.push_back({piece, time_s, std::hypot(passages.sigma_s[*from], passages.sigma_s[m]), *feed});
+      if (feed) out.push_back({piece, time_s, sigma_s, *feed});
       from = m;
     }
   }
