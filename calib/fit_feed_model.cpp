@@ -388,7 +388,7 @@ void set_waits(FitFeedResult& result, const std::vector<TimedLines>& data, doubl
   Machine waits = result.machine;
   waits.control.in_position_mm = width_mm;
   const LimitCost with = cost_of(data, waits), without = cost_of(data, result.machine);
-  if (with.fitted + with.held_out <= without.fitted + without.held_out) {
+  if (with.fitted + with.held_out < without.fitted + without.held_out + kSettledFraction * (1 + without.fitted)) {
     result.machine = waits;
     return;
   }
