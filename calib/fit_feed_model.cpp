@@ -35,6 +35,7 @@ constexpr double kSettledFraction = 1e-3;   // gain of cost under which a richer
 void set_control_defaults(machine::Control& control) {
   // No control takes up two blocks in one period.
   if (control.block_time_s == 0) control.block_time_s = control.kind.min_segment_periods * control.period_s;
+  control.starts_on_period = control.kind.starts_on_period;
   if (control.corner.law != machine::CornerLaw::blend) return;
   if (control.corner.step_fraction == 0) control.corner.step_fraction = control.kind.default_step_fraction;
   if (control.lookahead_blocks == 0) control.lookahead_blocks = control.kind.usual_lookahead_blocks;
@@ -367,6 +368,34 @@ void refine_block_time(LimitFit& fit, const std::vector<TimedLines>& data, const
   fit = fit_limits(data, base, std::move(parameters), iterations, false);
 }
 
+/// Whether a block that follows the stop of another one waits for a period: as it is with this kind of control, unless
+/// the other way is better.
+void choose_starts(FitFeedResult& result, LimitFit& fit, const std::vector<TimedLines>& data) {
+  bool& starts = result.machine.control.starts_on_period;
+  if (blocks_overlap(data, result.machine)) return;
+  if (!choose(
+          fit, data, {starts ? 0.0 : 1.0}, [](Machine& m, double v) { m.control.starts_on_period = v > 0; },
+          kListIterations))
+    return;
+  starts = fit.machine.control.starts_on_period;
+  result.parameters.push_back({"control.starts_on_period", starts ? 1.0 : 0.0, "1", std::nullopt,
+                               "1: a block that follows a stop waits for a period", true});
+}
+
+/// Whether the control waits at exact stops until the axes are in position: it does as the start file says, unless the
+/// traces have such stops and their times are those of a control that does not. Requires the drives.
+void set_waits(FitFeedResult& result, const std::vector<TimedLines>& data, double width_mm) {
+  Machine waits = result.machine;
+  waits.control.in_position_mm = width_mm;
+  const LimitCost with = cost_of(data, waits), without = cost_of(data, result.machine);
+  if (with.fitted + with.held_out < without.fitted + without.held_out + kSettledFraction * (1 + without.fitted)) {
+    result.machine = waits;
+    return;
+  }
+  result.parameters.push_back(
+      {"control.in_position_mm", machine::kNoLimit, "mm", std::nullopt, "the traces do not wait at exact stops", true});
+}
+
 /// Which program of camber protocol has what a parameter shows in.
 std::string_view what_tells(std::string_view name) {
   if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
@@ -654,6 +683,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   LimitFit limits = choose_law(result, data, {traced_accelerations(traces, rotary), held_accelerations(runs)},
                                options.max_iterations / 4, options.update);
   result.machine = base_with_law(base_of_all, limits.whole);
+  choose_starts(result, limits, data);
   refine_block_time(limits, data, result.machine, options.max_iterations / 3);
   const double period = result.machine.control.period_s;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend) {
@@ -669,7 +699,6 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   result.machine = limits.machine;
   add_limits(result, limits, base, !logged.empty());
   judge_logged(result, logged, limits.machine);
-  result.machine.control.in_position_mm = width_mm;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend)
     add_listed(result);
   add_angles(result);
@@ -689,6 +718,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
               "deg", drive);
     drives_converged = drives_converged && (!drive.moved || drive.converged);
   }
+  set_waits(result, data, width_mm);
   add_smoothing(result, runs, traces);
   std::vector<const nc::Interpretation*> programs;
   for (const FeedRun& run : runs) programs.push_back(&run.program);

@@ -416,6 +416,12 @@ double boundary_s(double before_end_s, const feedmodel::SegmentTime& segment) {
   return segment.overlapped && segment.start_s < before_end_s ? (before_end_s + segment.start_s) / 2 : segment.start_s;
 }
 
+bool begins_with_period(double start_s, double period_s) {
+  constexpr double kWhole = 1e-6;  // of a period
+  const double periods = start_s / period_s;
+  return std::abs(periods - std::round(periods)) < kWhole;
+}
+
 }  // namespace
 
 std::vector<double> planned_times_s(const TimedLines& data, const Machine& machine,
@@ -441,12 +447,14 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
     }
     if (first < 0) continue;
     if (i < segments.size()) end = std::min(end, boundary_s(end, segments[i]));
-    // At a stop the line changes with the next period: half a period on average, which a fit can follow better than
-    // whole ones.
+    // A line counts whole periods. Where it begins with one (with every stop, or where it follows a rest) it takes half
+    // a period more on average, which a fit can follow better than whole ones.
     const bool stops = i >= segments.size() || segments[i].rest || segments[i].start_s > end + kNoTime;
+    const bool counts_more =
+        machine.control.starts_on_period ? stops : begins_with_period(first, machine.control.period_s);
     const bool waits = data.logged() && !data.ends_in_motion[p];
-    times[p] =
-        end - first + (stops ? 0.5 * machine.control.period_s : 0.0) + (waits ? machine.control.rapid_change_s : 0.0);
+    times[p] = end - first + (counts_more ? 0.5 * machine.control.period_s : 0.0) +
+               (waits ? machine.control.rapid_change_s : 0.0);
   }
   return times;
 }

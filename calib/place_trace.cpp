@@ -11,10 +11,14 @@ namespace {
 
 using feedmodel::PathPlace;
 
-constexpr double kNearStartMm = 0.5;   // a start is looked for within this distance of the path
-constexpr double kAheadMm = 0.5;       // how far ahead of the axes' way a place is looked for
-constexpr double kAheadFactor = 1.3;   // times that way: corners are cut
-constexpr double kDetour = 0.05;       // what a millimetre along the path counts beside one off it
+constexpr double kNearStartMm = 0.5;  // a start is looked for within this distance of the path
+constexpr double kAheadMm = 0.5;      // how far ahead of the axes' way a place is looked for
+constexpr double kAheadFactor = 1.3;  // times that way: corners are cut
+constexpr double kAheadTime = 1.25;   // times the way at the programmed feed: overrides
+constexpr double kDetour = 0.02;      // what a millimetre along the path counts beside one off it
+constexpr std::size_t kMaxWays = 12;
+constexpr double kHopelessMm = 5.0;  // a way that costs this much more than the best is given up
+constexpr double kSamePlaceMm = 0.02;
 constexpr double kStillMm = 2e-3;      // from sample to sample
 constexpr double kMaxOffPathMm = 0.5;  // of 19 in 20 samples
 constexpr double kLostMm = 5.0;        // a start from which a sample is this far off is wrong
@@ -33,7 +37,12 @@ class Follower {
  public:
   Follower(const ServoTrace& trace, const nc::Interpretation& program, const Vec3& offset_mm)
       : trace_(trace), program_(program), offset_mm_(offset_mm) {
-    for (const nc::Move& move : program.moves) length_mm_.push_back(move.reference ? 0 : nc::length_mm(program, move));
+    double from_mm = 0;
+    for (const nc::Move& move : program.moves) {
+      from_mm_.push_back(from_mm);
+      length_mm_.push_back(move.reference ? 0 : nc::length_mm(program, move));
+      from_mm += length_mm_.back();
+    }
   }
 
   Vec3 at(std::size_t k) const { return position(trace_, k) + offset_mm_; }
@@ -49,45 +58,87 @@ class Follower {
     return found;
   }
 
-  /// The place of the next sample, after the axes went `went_mm`.
-  PathPlace next(const PathPlace& from, const Vec3& point_mm, double went_mm) const {
-    PathPlace best;
-    double least = std::numeric_limits<double>::infinity(), passed_mm = -from.u * length_mm_[from.move];
-    const double most_mm = kAheadMm + kAheadFactor * went_mm;
-    for (std::uint32_t m = from.move; m < program_.moves.size(); ++m) {
-      if (!program_.moves[m].reference && program_.moves[m].kind != nc::MoveKind::dwell) {
-        const PathPlace here = feedmodel::closest_on_move(program_, m, point_mm, m == from.move ? from.u : 0.0, 1);
-        const double way_mm = passed_mm + here.u * length_mm_[m];
-        const double score = here.distance_mm + kDetour * std::abs(way_mm - went_mm);
-        if (score < least) {
-          least = score;
-          best = here;
-        }
-      }
-      passed_mm += length_mm_[m];
-      // The way to or from a reference point is not known; the axes may be anywhere after it.
-      if (passed_mm > most_mm && !program_.moves[m].reference) break;
-    }
-    return std::isfinite(least) ? best : from;
-  }
-
-  /// Follows the samples from `first` on; returns the mean of the distances, infinite where they lead away.
-  double follow(PathPlace place, std::size_t first, std::size_t end, std::vector<PathPlace>* out) const {
-    double sum = 0;
+  /// Follows the samples from `first` on; returns the mean cost of a sample, infinite where they lead away. Where
+  /// samples are far apart several ways may lead to the next one: the best few are kept until one proves to be right.
+  double follow(const PathPlace& start, std::size_t first, std::size_t end, std::vector<PathPlace>* out) const {
+    std::vector<Layer> layers;
+    Layer layer{{start, start.distance_mm, 0}};
     for (std::size_t k = first; k < end; ++k) {
-      if (k > first) place = next(place, at(k), (at(k) - at(k - 1)).norm());
-      if (!out && place.distance_mm > kLostMm) return std::numeric_limits<double>::infinity();
-      sum += place.distance_mm;
-      if (out) out->push_back(place);
+      if (k > first) layer = next(layer, k);
+      if (!out && layer.front().place.distance_mm > kLostMm) return std::numeric_limits<double>::infinity();
+      if (out) layers.push_back(layer);
     }
-    return sum / static_cast<double>(end - first);
+    const double cost = layer.front().cost;
+    if (out) {
+      std::vector<PathPlace> back;
+      std::size_t at = 0;
+      for (auto l = layers.rbegin(); l != layers.rend(); ++l) {
+        back.push_back((*l)[at].place);
+        at = (*l)[at].parent;
+      }
+      out->insert(out->end(), back.rbegin(), back.rend());
+    }
+    return cost / static_cast<double>(end - first);
   }
 
  private:
+  /// A way that may have led to a sample; `parent`: of the layer before.
+  struct Way {
+    PathPlace place;
+    double cost = 0;
+    std::size_t parent = 0;
+  };
+  using Layer = std::vector<Way>;  ///< of one sample, the best first
+
+  /// The places to which the axes may have come from one place until sample k. The moves that are looked at: as far as
+  /// the axes went, and as far as the programmed feed leads.
+  void add_ways(const Way& from, std::size_t parent, std::size_t k, Layer& out) const {
+    const Vec3 point_mm = at(k);
+    const double went_mm = (point_mm - at(k - 1)).norm(), most_mm = kAheadMm + kAheadFactor * went_mm;
+    const double most_s = kAheadTime * (trace_.t_s[k] - trace_.t_s[k - 1]);
+    double passed_mm = -from.place.u * length_mm_[from.place.move], passed_s = 0;
+    for (std::uint32_t m = from.place.move; m < program_.moves.size(); ++m) {
+      const nc::Move& move = program_.moves[m];
+      if (!move.reference && move.kind != nc::MoveKind::dwell) {
+        const double from_u = m == from.place.move ? from.place.u : 0.0;
+        const PathPlace here = feedmodel::closest_on_move(program_, m, point_mm, from_u, 1);
+        const double way_mm = passed_mm + here.u * length_mm_[m];
+        // The way is at least as long as its chord.
+        const double cost = here.distance_mm + (way_mm < went_mm ? went_mm - way_mm : kDetour * (way_mm - went_mm));
+        out.push_back({here, from.cost + cost, parent});
+        if (is_feed(move) && move.feed_mm_per_s > 0) passed_s += (1 - from_u) * length_mm_[m] / move.feed_mm_per_s;
+      }
+      passed_mm += length_mm_[m];
+      // The way to or from a reference point is not known; the axes may be anywhere after it.
+      if (passed_mm > most_mm && passed_s > most_s && !move.reference) break;
+    }
+  }
+
+  Layer next(const Layer& from, std::size_t k) const {
+    Layer all, best;
+    for (std::size_t i = 0; i < from.size(); ++i) add_ways(from[i], i, k, all);
+    if (all.empty()) {
+      for (std::size_t i = 0; i < from.size(); ++i) best.push_back({from[i].place, from[i].cost, i});
+      return best;
+    }
+    std::ranges::stable_sort(all, {}, &Way::cost);
+    const auto known = [&](const Way& way) {
+      return std::ranges::any_of(
+          best, [&](const Way& b) { return std::abs(along_mm(b.place) - along_mm(way.place)) < kSamePlaceMm; });
+    };
+    for (const Way& way : all) {
+      if (best.size() == kMaxWays || way.cost > all.front().cost + kHopelessMm) break;
+      if (!known(way)) best.push_back(way);
+    }
+    return best;
+  }
+
+  double along_mm(const PathPlace& place) const { return from_mm_[place.move] + place.u * length_mm_[place.move]; }
+
   const ServoTrace& trace_;
   const nc::Interpretation& program_;
   Vec3 offset_mm_;
-  std::vector<double> length_mm_;
+  std::vector<double> length_mm_, from_mm_;  ///< of each move; from_mm_: along the path
 };
 
 std::size_t first_motion(const ServoTrace& trace) {

@@ -261,7 +261,7 @@ class Planner {
     const PlanRow& row = at(i).row;
     const Trapezoid profile = profile_at(i);
     const bool next = at(i).segment.overlaps;
-    OverlapOptions options{.start_s = begins_s_ ? *begins_s_ : start_of(profile),
+    OverlapOptions options{.start_s = begins_s_ ? *begins_s_ : start_of(i, profile),
                            .alone_from_s = now_s_,
                            .period_s = machine_.control.period_s};
     if (next)
@@ -292,7 +292,7 @@ class Planner {
   void time_along(std::size_t i) {
     SegmentTime& time = at(i).time;
     const Trapezoid profile = profile_at(i);
-    time.start_s = start_of(profile);
+    time.start_s = start_of(i, profile);
     if (time.rest) return;
     const auto begins = [&](int kind, double phase_s) {
       if (phase_s <= kNoRamp) return false;
@@ -308,11 +308,15 @@ class Planner {
     time.duration_s = profile.duration_s() + changes * delay_s_[time.mode];
   }
 
-  /// A start from (almost) rest waits for the next period of the control.
-  double start_of(const Trapezoid& profile) const {
+  /// A start from (almost) rest waits for the next period of the control: after a rest or a positioning always, after
+  /// the stop of another block where the control starts it on a period.
+  double start_of(std::size_t i, const Trapezoid& profile) const {
     const double period_s = machine_.control.period_s;
+    const bool after_block = i > 0 && !at(i - 1).time.rest && !at(i - 1).segment.axes_apart;
     const bool from_rest = profile.length > 0 && profile.entry < profile.acceleration * period_s;
-    if (!from_rest || now_s_ <= 0 || std::isinf(profile.acceleration)) return now_s_;
+    if (!from_rest || (after_block && !machine_.control.starts_on_period) || now_s_ <= 0 ||
+        std::isinf(profile.acceleration))
+      return now_s_;
     return std::max(now_s_, std::ceil(now_s_ / period_s - 1e-9) * period_s);
   }
 

@@ -47,7 +47,8 @@ struct SegmentTime {
   double end_s() const { return start_s + duration_s + wait_s; }
 };
 
-/// A motion that begins at (almost) rest begins at a whole period of the control. A positioning may begin before the
+/// A motion that begins at (almost) rest begins at a whole period of the control; after the stop of another block only
+/// where Control::starts_on_period says so. A positioning may begin before the
 /// one before it has ended (rapid_overlap_percent).
 struct MotionPlan {
   std::vector<PlanRow> rows;       ///< one for each segment of build_segments, lookahead done

@@ -33,6 +33,8 @@ struct ControlKind {
   bool g61_stops = true;
   /// G61.1 stops exactly; false: it is a mode of its own (Mazak: high-accuracy shape correction), not a stop.
   bool g61_1_stops = true;
+  /// A block that follows a stop begins with a period; where [control] starts_on_period is not given.
+  bool starts_on_period = false;
   /// No segment passes in less than this many periods.
   double min_segment_periods = 1;
   // With rotary axes

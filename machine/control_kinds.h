@@ -21,6 +21,7 @@ inline constexpr std::array kControlKinds{
                 .stops_between_rapid_and_feed = true,
                 .waits_in_position = false,
                 .g61_stops = false,
+                .starts_on_period = true,
                 .min_segment_periods = 1.02,  // TP_MIN_SEGMENT_CYCLES of its trajectory planner
                 .rotary_feed = RotaryFeed::linear,
                 .joint_limits = false,

@@ -81,6 +81,9 @@ struct Control {
   /// Limits of the axes count for the joints, under tool-centre-point control too. False: there for X, Y, Z of the
   /// program, A, B and C instead.
   bool joint_limits = true;
+  /// A block that follows the stop of another one begins with the next whole period; false: at once. After rests and
+  /// positionings every control begins with a period.
+  bool starts_on_period = false;
   std::optional<AccelerationTimes> acceleration_law{};  ///< for a parameter set ([control.mode]); not given: [cycle]'s
 };
 

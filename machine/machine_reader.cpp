@@ -71,6 +71,7 @@ void read_control(TomlTable table, Control& control) {
   control.rotary_feed = static_cast<RotaryFeed>(
       table.choice("rotary_feed", kRotaryFeedWords, static_cast<std::size_t>(control.kind.rotary_feed)));
   control.joint_limits = table.boolean("joint_limits", control.kind.joint_limits);
+  control.starts_on_period = table.boolean("starts_on_period", control.kind.starts_on_period);
   if (auto corner = table.table("corner")) read_corner(*corner, control.corner);
   table.ignore("mode");
   table.finish();

@@ -76,6 +76,8 @@ std::string to_toml(const Machine& machine) {
   if (machine.kinematics.given())
     out += toml_line("rotary_feed", kRotaryFeedWords[static_cast<std::size_t>(machine.control.rotary_feed)]) +
            fmt::format("joint_limits = {}\n", machine.control.joint_limits);
+  if (machine.control.starts_on_period != machine.control.kind.starts_on_period)
+    out += fmt::format("starts_on_period = {}\n", machine.control.starts_on_period);
   out += corner_text(machine.control.corner);
   for (const auto& [name, mode] : machine.modes) out += mode_text(name, mode);
   for (std::size_t i = 0; i < machine.axis.size(); ++i) out += axis_text(kAxisNames[i], machine.axis[i]);

@@ -76,6 +76,30 @@ TEST_F(PositionLog, GivesTimesOfPiecesThatThePlanHas) {
   }
 }
 
+/// Where samples are far apart, the way along corners and circles is much longer than its chord.
+TEST(PlaceTrace, FollowsSharpCornersAndCirclesBetweenSamples) {
+  tests::TestProgram p;
+  for (int row = 0; row < 6; ++row) {
+    const double y = 12.0 * row;
+    for (int i = 1; i <= 12; ++i) p.line(4.0 * i, y + (i % 2 ? 5 : 0), 0, 4500);
+    p.arc_xy(48, y, 48 - 3, y, 2 * kPi, 4500);
+    p.line(48, y + 6, 0, 4500).line(0, y + 6, 0, 4500).line(0, y + 12, 0, 4500);
+  }
+  machine::Machine machine;
+  for (machine::Axis& axis : machine.axis) axis.acceleration_mm_per_s2 = 900;
+  machine.control.corner = {.law = machine::CornerLaw::speed_difference, .speed_difference_mm_per_s = 15};
+  const FeedRun run = tests::traced_run(p.program, machine, {});
+  const ServoTrace log = piece_of_trace(run.trace, 211, run.trace.size() - 307, 143);
+  const auto placed = place_on_path(log, run.program);
+  ASSERT_TRUE(placed);
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    const std::uint32_t line = run.trace.line[211 + 143 * k];
+    if (line == 0) continue;
+    // At the end of a block the drives lag behind the line that is commanded.
+    EXPECT_NEAR(run.program.moves[placed->place[k].move].block + 1, line, 1) << k;
+  }
+}
+
 TEST_F(PositionLog, IsPlacedInAnotherWorkOffset) {
   ServoTrace log = piece_of_trace(run_.trace, 0, run_.trace.size(), 20);
   for (Vec3& p : log.actual_mm) p += Vec3(-240, 31, 77);

@@ -113,7 +113,7 @@ TEST(FittedRange, TellsTheSizeOfTheGuess) {
         << text;
     EXPECT_NEAR(predicted, time, 0.006);  // three digits
     EXPECT_NEAR(least, length / 50, 0.0006);
-    EXPECT_NEAR(most, stop, 90 * 0.001);  // each start from rest is at a whole period
+    EXPECT_NEAR(most, stop, 90 * 0.001);  // at most a period for each start from rest
   }
   EXPECT_NE(texts[2].find("[range-blocks]"), std::string::npos) << texts[2];
 }

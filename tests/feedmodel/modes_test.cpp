@@ -249,7 +249,7 @@ TEST(Modes, LawsOfAccelerationFollowEachOther) {
   const double exponential = time("X100\n"), linear = time("G05 P10000\nX100\n");
   EXPECT_NEAR(exponential, 1.4633, 1e-4);  // eqs. 4-5
   EXPECT_NEAR(linear, 100.0 / 75 + 75.0 / 877, 1e-9);
-  constexpr double kPeriod = 0.001;  // a start from rest is at a whole period
+  constexpr double kPeriod = 0.001;  // at most one for a start from rest
   EXPECT_NEAR(time("X100\nG05 P10000\nX200\n"), exponential + linear, kPeriod);
   EXPECT_NEAR(time("G05 P10000\nX100\nG05 P0\nX200\n"), exponential + linear, kPeriod);
   EXPECT_NEAR(time("X100\nG05 P10000\nX200\nG05 P0\nX300\n"), 2 * exponential + linear, 2 * kPeriod);

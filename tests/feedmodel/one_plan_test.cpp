@@ -114,6 +114,28 @@ TEST(OnePlan, TheControlWaitsInPositionBetweenRapidAndFeed) {
   }
 }
 
+TEST(OnePlan, ABlockAfterAStopBeginsAtOnceOrWithAPeriod) {
+  // From rest to rest a block takes L / v + v / a.
+  tests::TestProgram p;
+  p.line(1.2345, 0, 0, 600).line(1.2345, 2, 0, 600).dwell(0.0123).line(0, 2, 0, 600);
+  machine::Machine m;
+  for (machine::Axis& axis : m.axis) axis.acceleration_mm_per_s2 = 1000;
+  m.control.corner.law = machine::CornerLaw::exact_stop;
+  const double first_s = 1.2345 / 10 + 10 / 1000.0, second_s = 2 / 10.0 + 10 / 1000.0;
+  const double period_s = m.control.period_s;
+  const auto whole = [&](double t_s) { return std::ceil(t_s / period_s - 1e-9) * period_s; };
+  for (const bool starts : {false, true}) {
+    m.control.starts_on_period = starts;
+    const auto times = plan_motion(p.program, m).times;
+    ASSERT_GE(times.size(), 4u);
+    const double begin_s = starts ? whole(first_s) : first_s, end_s = begin_s + second_s;
+    EXPECT_NEAR(times[1].start_s, begin_s, kMicrosecond);
+    EXPECT_NEAR(times[1].end_s(), end_s, kMicrosecond);
+    // After a rest it waits in either case.
+    EXPECT_NEAR(times[3].start_s, whole(end_s + 0.0123), kMicrosecond);
+  }
+}
+
 TEST(OnePlan, TheWaitIsWhatTheLoopNeeds) {
   // From a constant acceleration a that ends in rest a first-order loop is a/Kp^2 behind: it comes within w after
   // ln(a / (Kp^2 w)) / Kp.

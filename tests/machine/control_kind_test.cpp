@@ -52,5 +52,17 @@ TEST(ControlKinds, YieldToTheRapidPathOfTheFile) {
           << kind.name;
 }
 
+TEST(ControlKinds, YieldToTheStartOfBlocksOfTheFile) {
+  for (const ControlKind& kind : control_kinds()) {
+    const std::string text = "[control]\ndialect = \"" + std::string(kind.name) + "\"\n";
+    EXPECT_EQ(machine_of(text).control.starts_on_period, kind.starts_on_period) << kind.name;
+    for (const bool starts : {false, true}) {
+      const Machine given = machine_of(text + "starts_on_period = " + (starts ? "true\n" : "false\n"));
+      EXPECT_EQ(given.control.starts_on_period, starts) << kind.name;
+      EXPECT_EQ(machine_of(to_toml(given)).control.starts_on_period, starts) << kind.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace camber::machine
