@@ -28,6 +28,7 @@
 #include "report/path_arrays.h"
 #include "report/planned_picture.h"
 #include "report/setup_sheet.h"
+#include "simulate/job_checks.h"
 #include "simulate/machine_checks.h"
 #include "simulate/machine_collisions.h"
 #include "simulate/setup_checks.h"
@@ -141,6 +142,7 @@ Checked check_program(const CheckAsked& asked, Diagnostics& found,
   const machine::Machine* machine = asked.machine;
   const machine::Job* job = asked.job;
   Checked checked{nc::interpret(text, options_as_read(asked.program.options, machine, job), found), {.text = &text}};
+  if (job) simulate::assume_speeds(*job, text, checked.moves, found);
   found.throw_if_errors();
   read(checked.moves);
   if (machine) simulate::check_machine(*machine, text, checked.moves, found);
