@@ -130,9 +130,9 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   const nc::Summary summary = nc::summarize(text, moves);
   const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
   settle(diagnostics, options);
-  write_file(arguments.output, report::job_text({seen_from(arguments.program, arguments.output),
-                                                 seen_from(machine, arguments.output), summary, tools, text,
-                                                 moves, arguments.material, arguments.interpreter.inch}));
+  write_file(arguments.output,
+             report::job_text({seen_from(arguments.program, arguments.output), seen_from(machine, arguments.output),
+                               summary, tools, text, moves, arguments.material, arguments.interpreter.inch}));
   if (options.quiet) return kDone;
   const auto cutting =
       std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });

@@ -101,7 +101,8 @@ void assume_speeds(const machine::Job& job, const nc::Program& program, nc::Inte
   }
   std::string speeds;
   for (const auto& [tool, feed] : feeds_mm_per_min)
-    speeds += fmt::format("{}{:.0f} rpm for T{}", speeds.empty() ? "" : ", ", usual_rpm(job.tools.at(tool), feed), tool);
+    speeds +=
+        fmt::format("{}{:.0f} rpm for T{}", speeds.empty() ? "" : ", ", usual_rpm(job.tools.at(tool), feed), tool);
   diagnostics.add(program.source.diagnostic(
       Severity::warning, program.blocks[first->block].offset,
       fmt::format("the program names no spindle speed; by the feed, {} are assumed; S in the program was expected",

@@ -19,11 +19,16 @@ std::string name_of(char letter) {
     char letter;
     const char* text;
   };
-  static constexpr std::array kNames{
-      Name{letter::kCompensation, "R0, RL or RR"}, Name{letter::kSense, "DR"},       Name{letter::kRapid, "FMAX"},
-      Name{letter::kAutoFeed, "FAUTO"},            Name{letter::kFeedPerTurn, "FU"}, Name{letter::kFeedPerTooth, "FZ"},
-      Name{letter::kPolarRadius, "PR"},            Name{letter::kPolarAngle, "PA"},  Name{letter::kLength, "LEN"},
-      Name{letter::kArcAngle, "CCA"}};
+  static constexpr std::array kNames{Name{letter::kCompensation, "R0, RL or RR"},
+                                     Name{letter::kSense, "DR"},
+                                     Name{letter::kRapid, "FMAX"},
+                                     Name{letter::kAutoFeed, "FAUTO"},
+                                     Name{letter::kFeedPerTurn, "FU"},
+                                     Name{letter::kFeedPerTooth, "FZ"},
+                                     Name{letter::kPolarRadius, "PR"},
+                                     Name{letter::kPolarAngle, "PA"},
+                                     Name{letter::kLength, "LEN"},
+                                     Name{letter::kArcAngle, "CCA"}};
   for (const Name& n : kNames)
     if (n.letter == letter) return n.text;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -271,8 +276,8 @@ void Klartext::set_feed(const BlockValues& b) {
 
 double Klartext::turns_per_s(const char* word) {
   if (state_.spindle_speed_rpm <= 0)
-    error(statement_->begin, "feed-per-turn",
-          fmt::format("{} without a spindle speed; S was expected before", word), word);
+    error(statement_->begin, "feed-per-turn", fmt::format("{} without a spindle speed; S was expected before", word),
+          word);
   return state_.spindle_speed_rpm / 60;
 }
 

@@ -602,8 +602,7 @@ TEST(Klartext, WordsThatABlockDoesNotHaveAreErrors) {
             "p.h:4:1: error: FUNCTION MODE (turning) is not supported; milling blocks were expected [not-supported]");
   EXPECT_EQ(one("POLARKIN OFF"),
             "p.h:4:1: error: POLARKIN (polar kinematics) is not supported; X, Y and Z were expected [not-supported]");
-  EXPECT_EQ(one("FUNCTION LIFTOFF TCS Z+0.5"),
-            "p.h:4:1: warning: FUNCTION LIFTOFF is read without effect [no-effect]");
+  EXPECT_EQ(one("FUNCTION LIFTOFF TCS Z+0.5"), "p.h:4:1: warning: FUNCTION LIFTOFF is read without effect [no-effect]");
 }
 
 TEST(Klartext, FeedsPerToothAndPerTurn) {
@@ -646,8 +645,7 @@ TEST(Klartext, TextBehindTheEndIsSaid) {
 
 TEST(Klartext, AnArcAtRapidTakesTheFeedBefore) {
   const Read r = read_lines(with_start("L X+10 Y+0\nCR X+20 Y+0 R+5 DR+ FMAX\n"));
-  EXPECT_EQ(r.messages,
-            Messages{"p.h:5:1: warning: an arc with FMAX is read with the F before it [arc-at-rapid]"});
+  EXPECT_EQ(r.messages, Messages{"p.h:5:1: warning: an arc with FMAX is read with the F before it [arc-at-rapid]"});
   EXPECT_NEAR(r.moves.moves.back().feed_mm_per_s, 10, 1e-12);
 }
 
