@@ -53,7 +53,7 @@ void BlockRunner::add_plain(std::span<const Word> words) {
     if (w.letter == 'G' || w.letter == 'M') {
       const int number =
           w.value >= 0 && w.value < 1e6 && w.value == std::floor(w.value) ? static_cast<int>(w.value) : -1;
-      (w.letter == 'G' ? words_.g : words_.m).push_back({number, w.offset, 1, w.value});
+      (w.letter == 'G' ? words_.g : words_.m).push_back({number, w.offset, main_spindle_, w.value});
       continue;
     }
     Slot& slot = w.letter == 'R' ? words_.set(Extra::cr) : words_.set(w.letter);
