@@ -14,6 +14,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "kinematics/control_options.h"
+#include "kinematics/travel_check.h"
 #include "machine/assumptions.h"
 #include "machine/machine.h"
 #include "machine/machine_presets.h"
@@ -110,6 +111,9 @@ ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, D
       Diagnostics tilted = diagnostics;
       nc::Interpretation with_axes = nc::interpret(text, interpreter_of(preset, arguments.interpreter), tilted);
       if (tilted.has_errors() || !turns_the_tool(nc::summarize(text, with_axes))) continue;
+      Diagnostics of_axes;  // a plane that this machine's axes turn to the other side
+      kinematics::check_travel(machine::read_machine(preset, of_axes), text, with_axes, of_axes);
+      if (of_axes.has_errors()) continue;
       diagnostics = std::move(tilted);
       return {std::move(with_axes), preset};
     }
