@@ -127,7 +127,9 @@ namespace {
 
 /// A program without M3 and M4 leaves its spindle to a subprogram or another M function of the machine.
 void complete_spindle(const Program& program, Interpretation& out, Diagnostics& diagnostics) {
-  if (std::ranges::any_of(out.states, [](const ModalState& s) { return s.spindle != SpindleDirection::stopped; }))
+  if (std::ranges::any_of(out.events, [](const Event& e) {
+        return e.kind == EventKind::spindle_clockwise || e.kind == EventKind::spindle_counter_clockwise;
+      }))
     return;
   const auto first = std::ranges::find_if(out.moves, [&](const Move& m) {
     const bool cuts = m.kind == MoveKind::linear || m.kind == MoveKind::arc;

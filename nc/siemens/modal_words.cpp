@@ -590,7 +590,7 @@ bool BlockRunner::read_m_codes_before() {
                           fmt::format("M{} is a function of the machine's maker; what it moves is not known, and it is "
                                       "passed over",
                                       code.number),
-                          fmt::format("M{}", code.number));
+                          "machine-function");
         break;
       }
     }
