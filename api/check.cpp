@@ -25,6 +25,7 @@
 #include "kinematics/travel_check.h"
 #include "machine/assumptions.h"
 #include "machine/machine_presets.h"
+#include "motion/job_checks.h"
 #include "motion/machine_checks.h"
 #include "plausibility/plausibility.h"
 #include "report/check_summary.h"
@@ -140,6 +141,7 @@ Checked check_program(const CheckAsked& asked, Diagnostics& found,
   const machine::Machine* machine = asked.machine;
   const machine::Job* job = asked.job;
   Checked checked{nc::interpret(text, options_as_read(asked.program.options, machine, job), found), {.text = &text}};
+  if (job) motion::assume_speeds(*job, text, checked.moves, found);
   found.throw_if_errors();
   read(checked.moves);
   if (machine) motion::check_machine(*machine, text, checked.moves, found);

@@ -1,6 +1,7 @@
 #include "cli/init_command.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -13,6 +14,7 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "kinematics/control_options.h"
+#include "kinematics/travel_check.h"
 #include "machine/assumptions.h"
 #include "machine/machine.h"
 #include "machine/machine_presets.h"
@@ -76,7 +78,8 @@ CLI::Validator material_name() {
 
 namespace {
 
-constexpr const char* kFiveAxisPreset = "preset:five-axis-trunnion";
+/// Machines of which a program that turns rotary axes takes the first that has them.
+constexpr std::array kFiveAxisPresets{"preset:five-axis-trunnion", "preset:five-axis-trunnion-bc"};
 
 /// As the machine reads it that the arguments name: words of rotary axes where it has some.
 nc::InterpreterOptions interpreter_of(const std::string& machine_path, nc::InterpreterOptions options) {
@@ -90,22 +93,32 @@ nc::InterpreterOptions interpreter_of(const std::string& machine_path, nc::Inter
 
 bool turns_the_tool(const nc::Summary& summary) { return summary.rotary > 0 || summary.tilted_frame > 0; }
 
-/// The moves; where no machine is named and the program turns rotary axes, those of a machine that has some.
-nc::Interpretation read_moves(const InitArguments& arguments, const nc::Program& text, Diagnostics& diagnostics) {
+struct ReadForJob {
+  nc::Interpretation moves;
+  std::string machine;  ///< as the arguments name it; else one with the rotary axes that the program turns, or empty
+};
+
+/// The moves; where no machine is named and the program turns rotary axes, those of a machine that has them.
+ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, Diagnostics& diagnostics) {
   Diagnostics upright = diagnostics;
-  nc::Interpretation moves = nc::interpret(text, interpreter_of(arguments.machine, arguments.interpreter), upright);
-  const bool turns = std::ranges::any_of(
-      upright.all(), [](const Diagnostic& d) { return d.check == "rotary-axis" || d.check == "tilted-plane"; });
-  if (turns && arguments.machine.empty()) {
-    Diagnostics tilted = diagnostics;
-    nc::Interpretation with_axes = nc::interpret(text, interpreter_of(kFiveAxisPreset, arguments.interpreter), tilted);
-    if (!tilted.has_errors() && turns_the_tool(nc::summarize(text, with_axes))) {
+  ReadForJob out{nc::interpret(text, interpreter_of(arguments.machine, arguments.interpreter), upright),
+                 arguments.machine};
+  const bool turns = std::ranges::any_of(upright.all(), [](const Diagnostic& d) {
+    return d.check == "rotary-axis" || d.check == "tilted-plane" || d.check == "not-read";
+  });
+  if (turns && arguments.machine.empty())
+    for (const char* preset : kFiveAxisPresets) {
+      Diagnostics tilted = diagnostics;
+      nc::Interpretation with_axes = nc::interpret(text, interpreter_of(preset, arguments.interpreter), tilted);
+      if (tilted.has_errors() || !turns_the_tool(nc::summarize(text, with_axes))) continue;
+      Diagnostics of_axes;  // a plane that this machine's axes turn to the other side
+      kinematics::check_travel(machine::read_machine(preset, of_axes), text, with_axes, of_axes);
+      if (of_axes.has_errors()) continue;
       diagnostics = std::move(tilted);
-      return with_axes;
+      return {std::move(with_axes), preset};
     }
-  }
   diagnostics = std::move(upright);
-  return moves;
+  return out;
 }
 
 }  // namespace
@@ -117,13 +130,13 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   if (arguments.program.empty()) return write_machine(arguments, options);
   Diagnostics diagnostics;
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
-  const nc::Interpretation moves = read_moves(arguments, text, diagnostics);
+  const auto [moves, machine] = read_moves(arguments, text, diagnostics);
   const nc::Summary summary = nc::summarize(text, moves);
   const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
   settle(diagnostics, options);
-  write_file(arguments.output, report::job_text({seen_from(arguments.program, arguments.output),
-                                                 seen_from(arguments.machine, arguments.output), summary, tools, text,
-                                                 moves, arguments.material, arguments.interpreter.inch}));
+  write_file(arguments.output,
+             report::job_text({seen_from(arguments.program, arguments.output), seen_from(machine, arguments.output),
+                               summary, tools, text, moves, arguments.material, arguments.interpreter.inch}));
   if (options.quiet) return kDone;
   const auto cutting =
       std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });

@@ -8,7 +8,7 @@
 #include "compensate/passes.h"
 #include "compensate/propose.h"
 #include "compensate/second_cuts.h"
-#include "simulate/operations.h"
+#include "motion/operations.h"
 
 namespace camber::compensate {
 namespace {

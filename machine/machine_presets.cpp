@@ -208,6 +208,59 @@ max_rpm = 18000.0                       # 12000 to 24000: data sheets
 chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
 )";
 
+constexpr std::string_view kFiveAxisTrunnionB = R"([control]
+period_ms = 1.0                         # 0.5 to 4: estimate
+block_time_ms = 1.0                     # 0.4 to 2: KAKEN: 1 and 2 ms
+corner = { law = "speed_difference", speed_difference_mm_per_min = 400 }  # 100 to 1000: estimate; KAKEN 246
+
+[kinematics]
+chain = ["part", "c", "b", "bed", "x", "y", "z", "spindle"]  # a trunnion that tilts about Y, a table that turns on it
+
+[axis.x]
+max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
+position_gain_per_s = 50.0              # 30 to 100: estimate
+feed_forward_percent = 90.0             # 0 to 100: Takata 90
+stiffness_N_per_um = 40.0               # 20 to 100: estimate
+
+[axis.y]
+max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
+position_gain_per_s = 50.0              # 30 to 100: estimate
+feed_forward_percent = 90.0             # 0 to 100: Takata 90
+stiffness_N_per_um = 40.0               # 20 to 100: estimate
+
+[axis.z]
+max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
+max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
+acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
+position_gain_per_s = 50.0              # 30 to 100: estimate
+feed_forward_percent = 90.0             # 0 to 100: Takata 90
+stiffness_N_per_um = 50.0               # 30 to 150: estimate
+
+[axis.b]
+direction = [0, 1, 0]
+point_mm = [0, 0, 0]                    # -300 to 300: estimate; where the axes' lines lie: the machine's own parameters
+positive = "table"
+max_velocity_deg_per_min = 9000.0       # 3000 to 36000: estimate; data sheets
+acceleration_deg_per_s2 = 600.0         # 200 to 6000: estimate
+
+[axis.c]
+direction = [0, 0, 1]
+point_mm = [0, 0, 0]                    # -300 to 300: estimate; as B
+positive = "table"
+max_velocity_deg_per_min = 18000.0      # 6000 to 72000: estimate; data sheets
+acceleration_deg_per_s2 = 1200.0        # 300 to 10000: estimate
+
+[spindle]
+max_rpm = 18000.0                       # 12000 to 24000: data sheets
+
+[tool_change]
+chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
+)";
+
 constexpr std::string_view kTnc640 = R"([control]
 dialect = "heidenhain"
 period_ms = 3.0                         # 1 to 6: TNC 640, iTNC 530: path interpolation each 3 ms
@@ -310,6 +363,8 @@ constexpr std::array kPresets{
     MachinePreset{"hsc-die-mould", "a high speed machine for dies and moulds", kHscDieMould},
     MachinePreset{"five-axis-trunnion", "a five-axis machining centre, tilting trunnion (A) and rotary table (C)",
                   kFiveAxisTrunnion},
+    MachinePreset{"five-axis-trunnion-bc", "a five-axis machining centre, tilting trunnion (B) and rotary table (C)",
+                  kFiveAxisTrunnionB},
     MachinePreset{"tnc-640", "a machining centre with a Heidenhain TNC 640 or iTNC 530", kTnc640},
     MachinePreset{"sinumerik-840d", "a machining centre with a Sinumerik 840D sl or 828D", kSinumerik840d},
 };

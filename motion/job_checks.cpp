@@ -1,12 +1,14 @@
 #include "motion/job_checks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "base/units.h"
 #include "deflection/beam.h"
 #include "motion/machine_checks.h"
 
@@ -66,7 +68,47 @@ void warn_of_vibration(const machine::Tool& tool, double rpm, const nc::Program&
                                 "tooth-frequency"));
 }
 
+double usual_rpm(const machine::Tool& tool, double feed_mm_per_min) {
+  constexpr double kMin_rpm = 1000, kMax_rpm = 12000, kStep_rpm = 100;
+  const double chip_mm = std::clamp(0.006 * tool.diameter_mm, 0.02, 0.1);
+  const double rpm = feed_mm_per_min / (std::max(tool.flutes, 1) * chip_mm);
+  return kStep_rpm * std::round(std::clamp(rpm, kMin_rpm, kMax_rpm) / kStep_rpm);
+}
+
 }  // namespace
+
+void assume_speeds(const machine::Job& job, const nc::Program& program, nc::Interpretation& moves,
+                   Diagnostics& diagnostics) {
+  if (std::ranges::any_of(moves.states, [](const nc::ModalState& s) {
+        return s.spindle_speed_rpm > 0 || s.spindle != nc::SpindleDirection::stopped;
+      }))
+    return;
+  std::map<int, double> feeds_mm_per_min;
+  const nc::Move* first = nullptr;
+  for (const nc::Move& m : moves.moves) {
+    const int tool = moves.state_of(m).tool;
+    if ((m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) || !job.tools.contains(tool)) continue;
+    if (!first) first = &m;
+    double& feed = feeds_mm_per_min[tool];
+    feed = std::max(feed, mm_per_min_from_mm_per_s(m.feed_mm_per_s));
+  }
+  if (!first) return;
+  for (nc::ModalState& s : moves.states) {
+    const auto feed = feeds_mm_per_min.find(s.tool);
+    if (feed == feeds_mm_per_min.end()) continue;
+    s.spindle_speed_rpm = usual_rpm(job.tools.at(s.tool), feed->second);
+    s.spindle = nc::SpindleDirection::clockwise;
+  }
+  std::string speeds;
+  for (const auto& [tool, feed] : feeds_mm_per_min)
+    speeds +=
+        fmt::format("{}{:.0f} rpm for T{}", speeds.empty() ? "" : ", ", usual_rpm(job.tools.at(tool), feed), tool);
+  diagnostics.add(program.source.diagnostic(
+      Severity::warning, program.blocks[first->block].offset,
+      fmt::format("the program names no spindle speed; by the feed, {} are assumed; S in the program was expected",
+                  speeds),
+      "spindle-assumed"));
+}
 
 void check_cutting(const machine::Job& job, const nc::Program& program, const nc::Interpretation& moves,
                    const std::vector<bool>& selected, const std::vector<HoleMove>& holes, Diagnostics& diagnostics) {
@@ -96,7 +138,8 @@ void check_cutting(const machine::Job& job, const nc::Program& program, const nc
     if (tool->second.type == machine::ToolType::drill && hole == HoleMove::none)
       error(fmt::format("T{} is a drill in the job, but mills here; ball, flat or bull was expected", number),
             "tool-type");
-    if (direction == nc::SpindleDirection::stopped || rpm <= 0)
+    const bool stopped = direction == nc::SpindleDirection::stopped && hole != HoleMove::tapped;
+    if (stopped || rpm <= 0)
       error(fmt::format("T{} {} with the spindle {}; S above zero and M3 were expected", number, deed(*move, hole),
                         rpm <= 0 ? "at S0" : "stopped"),
             "spindle-stopped");

@@ -17,8 +17,11 @@ SimulatedProgram simulate_motion(SourceText source, const Job& job, const feedmo
 }
 
 SimulatedProgram read_moves(SourceText source, const Job& job, Diagnostics& diagnostics) {
-  SimulatedProgram out{
-      kinematics::open_program(std::move(source), job.machine, kinematics::reading_of(job), diagnostics)};
+  const kinematics::ReadingOptions reading = kinematics::reading_of(job);
+  nc::Program text = nc::read_program(std::move(source), diagnostics);
+  nc::Interpretation moves = kinematics::read_moves(text, job.machine, reading, diagnostics);
+  assume_speeds(job, text, moves, diagnostics);
+  SimulatedProgram out{kinematics::MachineProgram(std::move(text), std::move(moves), job.machine)};
   diagnostics.throw_if_errors();
   kinematics::check_on_part(out, diagnostics);
   const machine::Operations operations = as_lines(job.operations, out.text(), out.moves_in_part());

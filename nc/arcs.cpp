@@ -45,7 +45,8 @@ std::string centre_from_radius(const ArcWords& words, const PlaneAxes& axes, Vec
   const double chord = std::hypot(dx, dy), radius = std::abs(*words.r_mm);
   if (radius == 0) return "R0 is no arc; a radius other than zero was expected";
   if (chord < kSamePlaceMm)
-    return "an arc with R ends where it starts, which leaves its centre open; I J K were expected for a full turn";
+    return "an arc with R ends where it starts, which leaves its centre open; an arc by its centre was expected for a "
+           "full turn";
   if (chord > 2 * radius + kChordOverDiameterMm)
     return fmt::format(
         "the end of the arc is {:.4f} mm from its start; with R {:.4f} mm at most {:.4f} mm can be reached", chord,

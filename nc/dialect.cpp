@@ -1,6 +1,8 @@
 #include "nc/dialect.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 #include "nc/dialects.h"
 #include "nc/modal_codes.h"
@@ -26,9 +28,21 @@ bool has_haas_offsets(const Program& program) {
   });
 }
 
+/// Its own ending of a file's name, or G28.1 and G30.1, which nobody else has.
+bool is_for_linuxcnc(const Program& program) {
+  const std::string_view name = program.source.name();
+  constexpr std::string_view kEnding = ".ngc";
+  const bool ends = name.size() > kEnding.size() &&
+                    std::ranges::equal(name.substr(name.size() - kEnding.size()), kEnding,
+                                       [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+  return ends || std::ranges::any_of(program.words, [](const Word& w) {
+           return w.letter == 'G' && (std::abs(w.value - 28.1) < 1e-9 || std::abs(w.value - 30.1) < 1e-9);
+         });
+}
+
 constexpr bool unique(bool Dialect::*fact) { return std::ranges::count(kDialects, true, fact) == 1; }
 static_assert(unique(&Dialect::shown_by_o_words) && unique(&Dialect::shown_by_m97) &&
-                  unique(&Dialect::haas_work_offsets),
+                  unique(&Dialect::haas_work_offsets) && unique(&Dialect::stores_reference_points),
               "a construct shows one dialect");
 
 }  // namespace
@@ -46,6 +60,7 @@ const Dialect* dialect_shown_by(const Program& program) {
   if (has_o_words(program)) return dialect_with(&Dialect::shown_by_o_words);
   if (program.macro.local_calls) return dialect_with(&Dialect::shown_by_m97);
   if (has_haas_offsets(program)) return dialect_with(&Dialect::haas_work_offsets);
+  if (is_for_linuxcnc(program)) return dialect_with(&Dialect::stores_reference_points);
   return nullptr;
 }
 

@@ -64,21 +64,27 @@ const Language& language_of(LanguageId id) {
   return *found;
 }
 
+/// Words that a single line shows may be of any language: against the name of the file they need a second line.
+bool contradicts_name(const Language& shown, const LanguageEvidence& evidence, const Language* by_name) {
+  return by_name && by_name != &shown && evidence.lines < 2;
+}
+
 RecognizedLanguage recognize_language(const SourceText& source) {
+  const std::string extension = extension_of(source.name());
+  const Language* by_name = nullptr;
+  for (const Language& language : kLanguages)
+    if (std::ranges::find(language.extensions, extension) != language.extensions.end()) by_name = &language;
   const Language* best = nullptr;
   LanguageEvidence of_best;
   for (const Language& language : kLanguages) {
     if (!language.evidence) continue;
     LanguageEvidence found = language.evidence(source.text());
-    if (found.lines <= of_best.lines) continue;
+    if (found.lines <= of_best.lines || contradicts_name(language, found, by_name)) continue;
     best = &language;
     of_best = std::move(found);
   }
   if (best) return {best, fmt::format("{} in line {}", of_best.word, source.location(of_best.offset).line)};
-  const std::string extension = extension_of(source.name());
-  for (const Language& language : kLanguages)
-    if (std::ranges::find(language.extensions, extension) != language.extensions.end())
-      return {&language, fmt::format("the name ends in .{}", extension)};
+  if (by_name) return {by_name, fmt::format("the name ends in .{}", extension)};
   return {&kLanguages.front(), "no word of another language"};
 }
 
@@ -117,14 +123,38 @@ std::optional<LanguageId> language_asked_for(const InterpreterOptions& options) 
   return options.dialect ? std::optional(options.dialect->language) : std::nullopt;
 }
 
+namespace {
+
+/// A program without M3 and M4 leaves its spindle to a subprogram or another M function of the machine.
+void complete_spindle(const Program& program, Interpretation& out, Diagnostics& diagnostics) {
+  if (std::ranges::any_of(out.events, [](const Event& e) {
+        return e.kind == EventKind::spindle_clockwise || e.kind == EventKind::spindle_counter_clockwise;
+      }))
+    return;
+  const auto first = std::ranges::find_if(out.moves, [&](const Move& m) {
+    const bool cuts = m.kind == MoveKind::linear || m.kind == MoveKind::arc;
+    return cuts && !m.reference && out.state_of(m).spindle_speed_rpm > 0;
+  });
+  if (first == out.moves.end()) return;
+  for (ModalState& s : out.states)
+    if (s.spindle_speed_rpm > 0) s.spindle = SpindleDirection::clockwise;
+  diagnostics.add(program.source.diagnostic(
+      Severity::warning, program.blocks[first->block].offset,
+      "the program has S, but neither M3 nor M4; a spindle that a subprogram or another M function of the machine "
+      "starts clockwise is assumed",
+      "spindle-assumed"));
+}
+
+}  // namespace
+
 /// A dialect of another language says nothing about the program: the machine's control may be given for others.
 Interpretation interpret(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics) {
   const Language& language = language_of(program);
-  if (!options.dialect || options.dialect->language == language.id)
-    return language.interpret(program, options, diagnostics);
   InterpreterOptions own = options;
-  own.dialect.reset();
-  return language.interpret(program, own, diagnostics);
+  if (own.dialect && own.dialect->language != language.id) own.dialect.reset();
+  Interpretation out = language.interpret(program, own, diagnostics);
+  complete_spindle(program, out, diagnostics);
+  return out;
 }
 
 }  // namespace camber::nc

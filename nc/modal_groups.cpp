@@ -261,8 +261,10 @@ void ModalGroups::set_contouring(const Code& code) {
   }
   at_.words.use("PQRL");
   const char letter = code.tenths == 51 ? 'Q' : 'P';
-  if (code.tenths == 50 && !at_.words.has('P')) {
-    at_.error(code.word->offset, "not-read", "G5 (spline) is not supported");
+  const bool has_axes = at_.words.has('X') || at_.words.has('Y') || at_.words.has('Z');
+  if ((code.tenths == 50 && !at_.words.has('P')) || (code.tenths <= 51 && has_axes)) {
+    at_.words.use("XYZIJK");
+    at_.error(code.word->offset, "not-read", fmt::format("{} (spline) is not supported", at_.code_text(code)));
     at_.request.skip_motion = true;
     return;
   }
@@ -367,6 +369,7 @@ void ModalGroups::read_m_codes_before(const std::function<bool(const Code&)>& is
               code.word->offset, "unknown-m",
               fmt::format("{} is not known; it is assumed to have no effect on the path", at_.code_text(code)));
         at_.words.use("PQR");
+        if (code.tenths == 670 || code.tenths == 680) at_.words.use("E");  // an analog output of LinuxCNC
         break;
       case MGroup::no_effect:
         at_.words.use("PQR");

@@ -273,6 +273,12 @@ class Scanner {
     behind_percent_ = ended_ = true;
   }
 
+  /// A text behind the first %, as some systems name a program: %1234, % PART 7.
+  bool is_title() const {
+    const std::size_t first = behind_blanks();
+    return first < end_ && text_[first] != '(' && !Glance(text(), first, end_).reads_as_block();
+  }
+
   void pass_behind_percent() {
     const std::size_t at = behind_blanks();
     if (at < end_ && is_letter(text_[at]))
@@ -316,7 +322,9 @@ class Scanner {
         return scan_divider(block_begin);
       case '%':
         end_at_percent();
-        return ++at_, true;
+        ++at_;
+        if (!ended_ && !begins_program(at_, end_) && is_title()) at_ = end_;
+        return true;
       case '/':
         return scan_skip();
       case '#':

@@ -254,7 +254,6 @@ std::string usual_machine(const JobProposal& proposal) {
   static const std::regex kRouter(
       R"(VECTRIC|WINCNC|CAMASTER|GRBL|SHAPEOKO|CARBIDE|STOCKMIN|X-?CARVE|ONEFINITY|MACH ?[23]|EASEL|ESTLCAM|OPENBUILDS|LONGMILL)",
       std::regex::icase);
-  if (turns_the_tool(proposal)) return "five-axis-trunnion";
   double rpm = 0, feed_mm_per_min = 0;
   for (const auto& use : proposal.summary.tools) {
     if (!use.spindle_speed_rpm.empty()) rpm = std::max(rpm, use.spindle_speed_rpm.max);

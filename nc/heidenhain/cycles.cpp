@@ -60,7 +60,12 @@ void Klartext::define_cycle(const Statement& s) {
   if (refused != kRefused.end() && part <= 0)
     error(s.begin, "not-supported",
           fmt::format("CYCL DEF {} ({}) is not supported; {}", *number, refused->what, refused->instead));
-  if (refused != kRefused.end()) return;
+  const auto pass = [&] {
+    cycle_ = {};
+    cycle_.number = *number;
+    cycle_.passed = true;
+  };
+  if (refused != kRefused.end()) return pass();
   if (*number < 200) return define_old_cycle(*number, part, at, s);
 
   // The name, then the parameters.
@@ -69,6 +74,10 @@ void Klartext::define_cycle(const Statement& s) {
     Cursor parameter = at;
     const auto name = read_parameter(parameter);
     if (!name || !parameter.accept('=')) {
+      at.go_to(begin);
+      if (at.word().find('=') != std::string::npos)
+        throw FormulaError(begin, "not-a-word",
+                           fmt::format("{} in CYCL DEF {}; Q parameters were expected", at.word(), *number));
       at.go_to(begin + 1);
       continue;
     }
@@ -101,12 +110,14 @@ void Klartext::define_cycle(const Statement& s) {
     warn(s.begin, "machine-cycle",
          fmt::format("CYCL DEF {} is a cycle of the machine's maker; what it does is not known, and it is passed over",
                      *number));
-    return;
+    return pass();
   }
-  if (std::ranges::find(kMade, *number) == kMade.end())
+  if (std::ranges::find(kMade, *number) == kMade.end()) {
+    pass();
     return error(
         s.begin, "not-supported",
         fmt::format("CYCL DEF {} is not supported; drilling cycles 200 to 209, 240 and 241 were expected", *number));
+  }
   cycle_ = {};
   cycle_.number = *number;
   cycle_.offset = s.begin;
@@ -229,7 +240,8 @@ void Klartext::set_tolerance(int part, Cursor at) {
   if (part == 1) {
     if (!at.accept_prefix("T") && !begins_number(at)) return;
     const std::size_t begin = at.offset();
-    if (!begins_number(at)) return;
+    if (!begins_number(at))
+      throw FormulaError(begin, "tolerance", "CYCL DEF 32.1 without a number; T0.02 or nothing was expected");
     const double tolerance = known(read_value(at, parameters_), begin) * unit_mm();
     if (tolerance < 0)
       throw FormulaError(begin, "tolerance", fmt::format("a tolerance of {}; zero or more was expected", tolerance));
@@ -238,10 +250,17 @@ void Klartext::set_tolerance(int part, Cursor at) {
     state_.blend_tolerance_mm = tolerance;
     state_changed_ = true;
   }
-  if (part == 2 && at.accept("HSC") && at.accept('-') && at.accept("MODE") && at.accept(':') && at.more()) {
+  if (part != 2 || !at.more()) return;
+  const std::size_t begin = at.offset();
+  if (at.accept("HSC") && at.accept('-') && at.accept("MODE") && at.accept(':') && at.more()) {
     state_.mode_words = with_mode_word(state_.mode_words, at.peek() == '0' ? "cycle32_finish" : "cycle32_rough");
     state_changed_ = true;
+    return;
   }
+  at.go_to(begin);
+  if (!at.accept_prefix("TA"))
+    throw FormulaError(begin, "tolerance",
+                       fmt::format("{} in CYCL DEF 32.2; HSC-MODE:0, HSC-MODE:1 or TA was expected", at.word()));
 }
 
 // --- calls
@@ -349,6 +368,7 @@ void Klartext::call_cycle(std::size_t offset) {
     error(offset, "cycle", "a cycle is called and none is defined; CYCL DEF was expected before");
     return;
   }
+  if (cycle_.passed) return;
   if (radius_.active && radius_.radius_mm != 0) {
     error(offset, "cutter-radius", "a cycle under RL or RR; R0 was expected before");
     end_compensation();

@@ -106,6 +106,7 @@ void Klartext::execute(const Statement& s) {
     case Kind::begin_program:
       break;
     case Kind::end_program:
+      note_rest(s);
       end_program();
       break;
     case Kind::line:
@@ -178,10 +179,46 @@ void Klartext::execute(const Statement& s) {
         if (const auto code = at.integer()) run_m({*code, std::nullopt, s.begin});
       break;
     }
+    case Kind::dwell:
+      run_dwell(s);
+      break;
+    case Kind::noted: {
+      Cursor at(file().source.text(), s.begin, s.end);
+      std::string name = at.letters();
+      at.advance(name.size());
+      at.more();
+      name += " " + at.letters();
+      warn(s.begin, "no-effect", fmt::format("{} is read without effect", name), name);
+      break;
+    }
     case Kind::refused:
       refuse(s);
       break;
   }
+}
+
+/// Blocks behind END PGM are never read.
+void Klartext::note_rest(const Statement& s) {
+  const auto& all = tree().statements;
+  for (std::size_t i = static_cast<std::size_t>(&s - all.data()) + 1; i < all.size(); ++i)
+    if (all[i].kind != Kind::nothing)
+      return warn(all[i].begin, "after-end", "text behind END PGM is no part of the program and is not read",
+                  "after-end");
+}
+
+/// FUNCTION DWELL TIME 2.5, in seconds; REV 3, in turns of the spindle.
+void Klartext::run_dwell(const Statement& s) {
+  Cursor at = cursor(s);
+  const bool turns = at.accept_prefix("REV");
+  if (!turns && !at.accept_prefix("TIME"))
+    throw FormulaError(at.offset(), "dwell", "FUNCTION DWELL without TIME or REV; TIME10 was expected");
+  const std::size_t offset = at.offset();
+  const double count = known(read_value(at, parameters_), offset);
+  const double rate = turns ? turns_per_s("FUNCTION DWELL REV") : 1;
+  if (!(count > 0) || rate <= 0) return;
+  Move& move = add_move(MoveKind::dwell, position_mm_);
+  move.dwell_s = count / rate;
+  move.editable = false;
 }
 
 void Klartext::refuse(const Statement& s) {

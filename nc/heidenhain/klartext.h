@@ -111,6 +111,7 @@ class Klartext {
     double radius = 0, sense = -1;
     std::size_t offset = 0;
     bool is_old() const { return number >= 0 && number < 100; }
+    bool passed = false;  ///< refused, or the maker's own: its definition said so, and its calls do nothing
   };
 
   // klartext.cpp
@@ -136,12 +137,15 @@ class Klartext {
   std::optional<double> system_value(int number) const;
   void finish();
   void refuse(const Statement& s);
+  void run_dwell(const Statement& s);
+  void note_rest(const Statement& s);
   void read_blank_form(const Statement& s);
 
   // words.cpp
   BlockValues read_values(const Statement& s);
   double value_of(const Word& word);
   void set_feed(const BlockValues& b);
+  void set_feed_mode(const BlockValues& b);
   void functions_before(const BlockValues& b);
   void functions_after(const BlockValues& b);
   void run_m(const BlockValues::Function& f);
@@ -149,6 +153,8 @@ class Klartext {
   void define_tool(const Statement& s);
   void set_spindle_speed(double rpm, std::size_t offset);
   std::optional<double> tool_radius_mm() const;
+  double turns_per_s(const char* word);
+  double teeth();
   double cutting_feed(const std::string& what);
   void add_event(EventKind kind, double value);
   double plunging_feed(double feed, const Vec3& way_mm) const;

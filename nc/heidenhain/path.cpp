@@ -40,6 +40,7 @@ void Klartext::run_path(const Statement& s) {
   if (s.kind == Kind::centre) return set_centre(b);
   if (s.kind == Kind::rounding || s.kind == Kind::chamfer) return set_corner(s, b);
   const std::optional<double> feed_before = feed_;
+  set_feed_mode(b);
   set_feed(b);
   functions_before(b);
   if (s.kind == Kind::approach) {
@@ -99,6 +100,7 @@ void Klartext::run_path(const Statement& s) {
 /// M, F and S alone.
 void Klartext::run_functions(const Statement& s) {
   const BlockValues b = read_values(s);
+  set_feed_mode(b);
   set_feed(b);
   functions_before(b);
   for (const auto& f : b.functions)
@@ -473,13 +475,12 @@ void Klartext::arc_to(const Vec3& programmed_end, const Arc& arc, const BlockVal
   in_moves->by_radius = by_radius;
   const Vec3 end = end_in_moves(programmed_end, given_axes(b) | 7U);
   out_.arcs.push_back(*in_moves);
-  const double feed = b.rapid ? 0 : cutting_feed("an arc");
+  const double feed = cutting_feed("an arc");
+  if (b.rapid && feed > 0)
+    warn(statement_->begin, "arc-at-rapid", "an arc with FMAX is read with the F before it", "FMAX");
   Move& move = add_move(MoveKind::arc, end);
   move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
   move.feed_mm_per_s = feed;
-  if (b.rapid) {
-    error(statement_->begin, "feed-missing", "an arc with FMAX; F with a feed was expected", "FMAX");
-  }
 }
 
 bool Klartext::make_arc_of(ArcWords words, const BlockValues& b) {

@@ -224,6 +224,7 @@ class Reader {
     } else if (word == "SEL") {
       if (at.accept("PGM")) return take(Kind::select_program);
       if (at.accept("TABLE")) return take(Kind::passed);
+      if (at.accept("CORR")) return take(Kind::noted);
     } else if (word == "FUNCTION") {
       if (at.accept("TCPM")) return take(Kind::tcpm);
       const std::size_t reset = at.offset();
@@ -232,8 +233,10 @@ class Reader {
         return take(Kind::tcpm);
       }
       at.go_to(reset);
-      if (at.accept("FEED") || at.accept("DWELL") || at.accept("S") || at.accept("MODE") || at.accept("PROG"))
-        return take(Kind::passed);
+      if (at.accept("MODE")) return !at.accept("TURN") && take(Kind::passed);
+      if (at.accept("DWELL")) return take(Kind::dwell);
+      for (const char* other : {"FEED", "S", "PROG", "FILE", "COUNT", "LIFTOFF", "CORRDATA"})
+        if (at.accept(other)) return take(Kind::noted);
     }
     return false;
   }
@@ -445,7 +448,8 @@ class Reader {
       return true;
     };
     const char next = at.behind(1), third = at.behind(2);
-    const bool ends = !is_digit(third) && third != '.' && third != ',' && third != 'Q' && !is_letter(third);
+    const bool ends = !is_digit(third) && third != '.' && third != ',' && third != 'Q' &&
+                      (!is_letter(third) || third == 'F' || third == 'M');
     if (next == 'L' && ends) return compensation(1);
     if (next == 'R' && ends) return compensation(2);
     if (next == '0' && ends && kind_ != Kind::rounding) return compensation(0);
@@ -535,6 +539,8 @@ constexpr std::array kRefused{
     Refused{"FUNCTION PARAXMODE", "parallel axes", "X, Y and Z were expected"},
     Refused{"FUNCTION POLARKIN", "polar kinematics", "X, Y and Z were expected"},
     Refused{"FUNCTION TURNDATA", "turning", "milling blocks were expected"},
+    Refused{"FUNCTION MODE", "turning", "milling blocks were expected"},
+    Refused{"POLARKIN", "polar kinematics", "X, Y and Z were expected"},
     Refused{"CONTOUR", "an SL contour", "the finished path of the contour was expected"},
     Refused{"SEL CONTOUR", "an SL contour", "the finished path of the contour was expected"},
     Refused{"SEL PATTERN", "a point table", "PATTERN DEF or L blocks with M99 were expected"},

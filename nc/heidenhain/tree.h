@@ -46,7 +46,9 @@ enum class Kind : std::uint8_t {
   transform,  ///< TRANS DATUM, MIRROR, ROTATION, SCALE
   pattern,    ///< PATTERN DEF
   stop,
+  dwell,   ///< FUNCTION DWELL
   passed,  ///< read without effect on the moves
+  noted,   ///< likewise, and said
   refused  ///< [not-supported] or unknown: said when it is run
 };
 

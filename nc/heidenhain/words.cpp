@@ -1,5 +1,6 @@
 // The words of a block: values, feeds, M functions, tools.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -9,6 +10,89 @@
 #include "nc/mode_words.h"
 
 namespace camber::nc::heidenhain {
+
+namespace {
+
+/// As the text has it.
+std::string name_of(char letter) {
+  struct Name {
+    char letter;
+    const char* text;
+  };
+  static constexpr std::array kNames{Name{letter::kCompensation, "R0, RL or RR"},
+                                     Name{letter::kSense, "DR"},
+                                     Name{letter::kRapid, "FMAX"},
+                                     Name{letter::kAutoFeed, "FAUTO"},
+                                     Name{letter::kFeedPerTurn, "FU"},
+                                     Name{letter::kFeedPerTooth, "FZ"},
+                                     Name{letter::kPolarRadius, "PR"},
+                                     Name{letter::kPolarAngle, "PA"},
+                                     Name{letter::kLength, "LEN"},
+                                     Name{letter::kArcAngle, "CCA"}};
+  for (const Name& n : kNames)
+    if (n.letter == letter) return n.text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (letter == letter::kNormal[i]) return std::string("N") + "XYZ"[i];
+    if (letter == letter::kTool[i]) return std::string("T") + "XYZ"[i];
+  }
+  return {letter};
+}
+
+std::string_view keyword_of(Kind kind) {
+  switch (kind) {
+    case Kind::normal_line:
+      return "LN";
+    case Kind::polar_line:
+      return "LP";
+    case Kind::circle:
+      return "C";
+    case Kind::radius_arc:
+      return "CR";
+    case Kind::tangent_arc:
+      return "CT";
+    case Kind::polar_circle:
+      return "CP";
+    case Kind::polar_tangent_arc:
+      return "CTP";
+    case Kind::centre:
+      return "CC";
+    case Kind::rounding:
+      return "RND";
+    case Kind::chamfer:
+      return "CHF";
+    default:
+      return "L";
+  }
+}
+
+/// Whether blocks of this kind use the word. Others the control does not accept.
+bool belongs_to(char letter, Kind kind) {
+  const bool polar = kind == Kind::polar_line || kind == Kind::polar_circle || kind == Kind::polar_tangent_arc;
+  const bool corner = kind == Kind::rounding || kind == Kind::chamfer;
+  const bool contour = kind == Kind::approach || kind == Kind::departure;
+  if (contour || kind == Kind::functions) return true;
+  if (kind == Kind::centre) return (letter >= 'X' && letter <= 'Z') || letter == 'M';
+  switch (letter) {
+    case letter::kPolarRadius:
+      return polar && kind != Kind::polar_circle;
+    case letter::kPolarAngle:
+      return polar;
+    case letter::kSense:
+      return kind == Kind::circle || kind == Kind::radius_arc || kind == Kind::polar_circle;
+    case 'R':
+      return kind == Kind::radius_arc || corner;
+    case letter::kLength:
+    case letter::kArcAngle:
+      return false;
+    default:
+      break;
+  }
+  const bool direction = std::ranges::find(letter::kNormal, letter) != std::end(letter::kNormal) ||
+                         std::ranges::find(letter::kTool, letter) != std::end(letter::kTool);
+  return !direction || kind == Kind::normal_line;
+}
+
+}  // namespace
 
 /// The number of the word, or its parameter's.
 double Klartext::value_of(const Word& word) {
@@ -23,19 +107,28 @@ BlockValues Klartext::read_values(const Statement& s) {
   for (const Word& word : tree().words_of(program, s)) {
     const bool by_parameter = std::isnan(word.value);
     const auto number = [&] { return by_parameter ? known(value_of(word), word.offset) : word.value; };
-    const auto place = [&](std::optional<double>& out, std::size_t) {
-      if (out)
-        error(word.offset, "repeated-word", fmt::format("{} stands twice in the block; once was expected", word.letter),
-              "repeated");
+    const auto once = [&](bool stands_already) {
+      if (stands_already)
+        error(word.offset, "repeated-word",
+              fmt::format("{} stands twice in the block; once was expected", name_of(word.letter)), "repeated");
+    };
+    const auto place = [&](std::optional<double>& out) {
+      once(out.has_value());
       out = number();
       b.by_parameter |= by_parameter;
     };
+    if (!belongs_to(word.letter, s.kind)) {
+      error(word.offset, "not-a-word",
+            fmt::format("{} has no meaning in a block that begins with {}", name_of(word.letter), keyword_of(s.kind)),
+            fmt::format("{} {}", word.letter, static_cast<int>(s.kind)));
+      continue;
+    }
     switch (word.letter) {
       case 'X':
       case 'Y':
       case 'Z': {
         const auto axis = static_cast<std::size_t>(word.letter - 'X');
-        place(b.axis[axis], axis);
+        place(b.axis[axis]);
         if (is_incremental(program, word)) b.step = static_cast<std::uint8_t>(b.step | 1U << axis);
         break;
       }
@@ -56,6 +149,7 @@ BlockValues Klartext::read_values(const Statement& s) {
           }
           value = known(value, word.offset);
         }
+        once(b.rotary[axis].has_value());
         b.rotary[axis] = value;
         if (is_incremental(program, word)) b.rotary_step = static_cast<std::uint8_t>(b.rotary_step | 1U << axis);
         break;
@@ -67,6 +161,7 @@ BlockValues Klartext::read_values(const Statement& s) {
               fmt::format("the axis {} is not supported; X, Y, Z, A, B and C were expected", word.letter), "axis");
         break;
       case 'F':
+        once(b.feed.has_value());
         b.feed = number();
         b.feed_by_variable = by_parameter;
         break;
@@ -77,26 +172,29 @@ BlockValues Klartext::read_values(const Statement& s) {
         b.auto_feed = true;
         break;
       case letter::kFeedPerTurn:
+        once(b.feed_per_turn.has_value());
         b.feed_per_turn = number();
         break;
       case letter::kFeedPerTooth:
         b.feed_per_tooth = number();
         break;
       case 'R':
-        b.radius = number();
-        b.by_parameter |= by_parameter;
+        place(b.radius);
         break;
       case letter::kCompensation:
+        once(b.compensation.has_value());
         b.compensation = static_cast<int>(word.value);
         break;
       case letter::kSense:
         b.sense = static_cast<int>(word.value);
         break;
       case letter::kPolarRadius:
+        once(b.polar_radius.has_value());
         b.polar_radius = number();
         b.polar_radius_step = is_incremental(program, word);
         break;
       case letter::kPolarAngle:
+        once(b.polar_angle.has_value());
         b.polar_angle = number();
         b.polar_angle_step = is_incremental(program, word);
         break;
@@ -138,6 +236,18 @@ BlockValues Klartext::read_values(const Statement& s) {
 
 // --- feeds
 
+/// M136, M137: the F of their own block counts in the new unit.
+void Klartext::set_feed_mode(const BlockValues& b) {
+  for (const auto& f : b.functions) {
+    if (f.code != 136 && f.code != 137) continue;
+    const FeedMode mode = f.code == 136 ? FeedMode::per_revolution : FeedMode::per_minute;
+    if (mode == state_.feed_mode) continue;
+    state_.feed_mode = mode;
+    state_changed_ = true;
+    feed_.reset();
+  }
+}
+
 void Klartext::set_feed(const BlockValues& b) {
   if (b.feed) {
     if (*b.feed < 0) {
@@ -156,14 +266,29 @@ void Klartext::set_feed(const BlockValues& b) {
     feed_given_ = true;
     feed_by_variable_ = true;
   } else if (b.feed_per_turn) {
-    const double rpm = state_.spindle_speed_rpm;
-    if (rpm <= 0) error(statement_->begin, "feed-per-turn", "FU without a spindle speed; S was expected before");
-    feed_ = *b.feed_per_turn * unit_mm() * rpm / 60;
+    feed_ = *b.feed_per_turn * unit_mm() * turns_per_s("FU");
     feed_given_ = feed_by_variable_ = true;
   } else if (b.feed_per_tooth) {
-    error(statement_->begin, "not-supported",
-          "FZ (feed per tooth) needs the number of teeth of the tool table and is not supported; F was expected");
+    feed_ = *b.feed_per_tooth * unit_mm() * teeth() * turns_per_s("FZ");
+    feed_given_ = feed_by_variable_ = true;
   }
+}
+
+double Klartext::turns_per_s(const char* word) {
+  if (state_.spindle_speed_rpm <= 0)
+    error(statement_->begin, "feed-per-turn", fmt::format("{} without a spindle speed; S was expected before", word),
+          word);
+  return state_.spindle_speed_rpm / 60;
+}
+
+double Klartext::teeth() {
+  constexpr int kAssumed = 2;
+  warn(statement_->begin, "teeth-unknown",
+       fmt::format("FZ needs the number of teeth of tool {}, which stands in the tool table of the control; {} are "
+                   "assumed",
+                   state_.tool, kAssumed),
+       fmt::format("teeth of {}", state_.tool));
+  return kAssumed;
 }
 
 double Klartext::cutting_feed(const std::string& what) {
@@ -297,15 +422,8 @@ void Klartext::run_m(const BlockValues::Function& f) {
       set_tip_control(false, f.offset);
       break;
     case 136:
-    case 137: {
-      const FeedMode mode = f.code == 136 ? FeedMode::per_revolution : FeedMode::per_minute;
-      if (mode != state_.feed_mode) {
-        state_.feed_mode = mode;
-        state_changed_ = true;
-        feed_.reset();
-      }
-      break;
-    }
+    case 137:
+      break;  // set_feed_mode reads them
     default:
       add_event(EventKind::m_code, f.code);
       if (f.code <= 1 || f.code == 6 || std::ranges::find(kPassed, f.code) != kPassed.end()) break;
@@ -368,6 +486,7 @@ void Klartext::call_tool(const Statement& s) {
     tool_delta_radius_mm_ = 0;
     add_event(EventKind::tool_change, *number);
   }
+  BlockValues b;
   while (at.more()) {
     const std::size_t offset = at.offset();
     const char c = at.peek();
@@ -389,10 +508,15 @@ void Klartext::call_tool(const Statement& s) {
     } else if (c == 'F') {
       at.advance();
       if (at.accept("AUTO") || at.accept("MAX")) continue;
+      const char per = at.peek();
+      if (per == 'Z' || per == 'U') at.advance();
       const double feed = known(read_value(at, parameters_), offset);
-      feed_ = tool_feed_ = mm_per_s_from_mm_per_min(feed * unit_mm());
-      feed_given_ = true;
-      feed_by_variable_ = false;
+      if (per == 'Z')
+        b.feed_per_tooth = feed;
+      else if (per == 'U')
+        b.feed_per_turn = feed;
+      else
+        b.feed = feed;
     } else if (c >= 'X' && c <= 'Z') {
       at.advance();
       tool_axis_ = c - 'X';
@@ -406,6 +530,9 @@ void Klartext::call_tool(const Statement& s) {
                          fmt::format("{} in TOOL CALL; the axis, S, F, DL, DR or DR2 was expected", at.word()));
     }
   }
+  if (!b.feed && !b.feed_per_tooth && !b.feed_per_turn) return;
+  set_feed(b);
+  tool_feed_ = feed_;
 }
 
 /// TOOL DEF 5 L+0 R+3: a tool of the program; without L and R the next one is made ready.

@@ -68,7 +68,9 @@ class BlockRunner : public SystemValues {
   void leave_for_machine_place(char axis, const std::string& name, std::uint32_t offset);
   void go_home(const WordRow& row, std::uint32_t offset, const BlockPlace& place);
   /// SETMS(n), OFFN=, RNDM=
-  void set_main_spindle(int number) { main_spindle_ = number; }
+  void set_main_spindle(int number) { main_spindle_ = number, main_spindle_named_ = true; }
+  /// S3=2000 of a spindle that is not the main one: it counts where that one is the first to turn.
+  void note_speed(int spindle, const Slot& speed) { other_speeds_[spindle] = speed; }
   int main_spindle() const { return main_spindle_; }
   void set_offset_normal(double value) { offset_normal_mm_ = value * unit_mm(); }
   void set_contour_tolerance(double tolerance);
@@ -136,6 +138,7 @@ class BlockRunner : public SystemValues {
   void change_tool(std::uint32_t offset);
   void read_edge();
   bool read_m_codes_before();
+  void start_spindle(const CodeWord& code);
   bool read_m_codes_after(bool& ends_subprogram);
   void set_contouring();
   void set_mode_word(std::string_view upper_name);
@@ -235,6 +238,8 @@ class BlockRunner : public SystemValues {
   std::optional<double> feed_;  ///< mm/s (G94), 1/s (G93), mm a turn (G95)
   bool feed_given_ = false, feed_by_variable_ = false;
   int main_spindle_ = 1;
+  bool main_spindle_named_ = false;  ///< by SETMS
+  std::map<int, Slot> other_speeds_;
   int next_tool_ = -1;
   bool tool_changed_ = false;
   std::size_t tool_word_offset_ = 0;

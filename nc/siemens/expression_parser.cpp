@@ -183,6 +183,10 @@ std::uint32_t LineParser::parse_quoted() {
             .offset = static_cast<std::uint32_t>(begin),
             .length = static_cast<std::uint32_t>(at_ - begin)};
   if (mark == '\'') {
+    if (content.size() == 1) {  // 'A': a character
+      node.number = static_cast<unsigned char>(content[0]);
+      return add(node);
+    }
     const char base = content.empty() ? '\0' : upper(content[0]);
     std::uint64_t value = 0;
     const char* first = content.data() + 1;

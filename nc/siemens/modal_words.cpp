@@ -53,7 +53,7 @@ void BlockRunner::add_plain(std::span<const Word> words) {
     if (w.letter == 'G' || w.letter == 'M') {
       const int number =
           w.value >= 0 && w.value < 1e6 && w.value == std::floor(w.value) ? static_cast<int>(w.value) : -1;
-      (w.letter == 'G' ? words_.g : words_.m).push_back({number, w.offset, 1, w.value});
+      (w.letter == 'G' ? words_.g : words_.m).push_back({number, w.offset, main_spindle_, w.value});
       continue;
     }
     Slot& slot = w.letter == 'R' ? words_.set(Extra::cr) : words_.set(w.letter);
@@ -527,17 +527,32 @@ void BlockRunner::update_tool_length() {
 
 // --- M codes
 
+/// M3, M4; M13 and M14 with coolant, as most makers of machines have them. The first spindle that turns is the one that
+/// cuts, whatever its number, unless SETMS has named another.
+void BlockRunner::start_spindle(const CodeWord& code) {
+  if (code.spindle != main_spindle_) {
+    if (main_spindle_named_ || state_.spindle != SpindleDirection::stopped) return;
+    main_spindle_ = code.spindle;
+    if (const auto speed = other_speeds_.find(code.spindle); speed != other_speeds_.end()) {
+      words_.set('S') = speed->second;
+      read_spindle_speed();
+    }
+  }
+  const bool clockwise = code.number == 3 || code.number == 13;
+  state_.spindle = clockwise ? SpindleDirection::clockwise : SpindleDirection::counter_clockwise;
+  state_.coolant |= code.number >= 13;
+  change_state();
+  add_event(clockwise ? EventKind::spindle_clockwise : EventKind::spindle_counter_clockwise, state_.spindle_speed_rpm);
+}
+
 bool BlockRunner::read_m_codes_before() {
   for (const CodeWord& code : words_.m) {
-    const bool main = code.spindle == main_spindle_;
     switch (code.number) {
       case 3:
       case 4:
-        if (!main) break;
-        state_.spindle = code.number == 3 ? SpindleDirection::clockwise : SpindleDirection::counter_clockwise;
-        change_state();
-        add_event(code.number == 3 ? EventKind::spindle_clockwise : EventKind::spindle_counter_clockwise,
-                  state_.spindle_speed_rpm);
+      case 13:
+      case 14:
+        start_spindle(code);
         break;
       case 6:
         change_tool(code.offset);
@@ -569,6 +584,13 @@ bool BlockRunner::read_m_codes_before() {
           break;
         }
         add_event(EventKind::m_code, code.number);
+        constexpr int kOfControl[] = {10, 11, 40, 41, 42, 43, 44, 45, 48, 49, 70};
+        if (std::ranges::find(kOfControl, code.number) == std::end(kOfControl))
+          report_.warning(code.offset, "machine-function",
+                          fmt::format("M{} is a function of the machine's maker; what it moves is not known, and it is "
+                                      "passed over",
+                                      code.number),
+                          "machine-function");
         break;
       }
     }

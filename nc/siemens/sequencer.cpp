@@ -502,7 +502,11 @@ void Sequencer::run_word(const Item& item) {
       break;
     }
     case 'S':
-      if (static_cast<int>(extension) != runner_.main_spindle()) return;  // another spindle
+      if (static_cast<int>(extension) != runner_.main_spindle()) {
+        const double rpm = word_value(item, name);
+        return runner_.note_speed(static_cast<int>(extension),
+                                  {true, !item.constant, item.dimension, rpm, item.offset});
+      }
       break;
     case 'H':
       return;
@@ -651,6 +655,8 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
       std::string name;
       for (const char c : evaluator_.text(item.value))
         if (c != ' ' && c != '"') name += c >= 'a' && c <= 'z' ? static_cast<char>(c - 32) : c;
+      for (const char* ending : {".SPF", ".MPF"})
+        if (name.ends_with(ending)) name.resize(name.size() - 4);
       return start_subprogram(name, item, times, false);
     }
     case Does::workpiece:

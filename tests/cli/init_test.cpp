@@ -287,9 +287,29 @@ TEST(Init, TakesAFiveAxisMachineForAProgramThatTurnsItsAxes) {
     return at == std::string::npos ? job : job.substr(at + 11, job.find('"', at + 11) - at - 11);
   };
   EXPECT_EQ(machine_of("tip"), "preset:five-axis-trunnion");
+  folder.write("bc.mpf",
+               "G710 G17 G90 G54\nT1 M6 D1 ; D=6 CR=3 BALL\nS5000 M3 F1000\nTRAORI\nG0 X0 Y0 Z50 B0 C0\nG1 Z0\n"
+               "X10 B10 C20\nX20 Y5\nTRAFOOF\nCYCLE800(1,\"T\",0,57,0,0,0,0,30,0,0,0,0,1)\nG0 X0 Y0 Z50\n"
+               "CYCLE800()\nM30\n");
+  EXPECT_EQ(machine_of("bc"), "preset:five-axis-trunnion-bc");
+  const auto check_bc = run_camber(folder, "check --job bc.toml");
+  EXPECT_EQ(check_bc.status, 0) << check_bc.err;
   EXPECT_EQ(machine_of("upright"), "preset:vmc-40");
   const auto check = run_camber(folder, "check --job tip.toml");
   EXPECT_EQ(check.status, 0) << check.err;
+}
+
+/// As for routers whose spindle is set by hand: the job runs all the same, and says what it assumes.
+TEST(Init, AProgramWithoutASpindleGetsAJobThatRuns) {
+  const TempFolder folder;
+  folder.write("p.nc", "G21 G90\nT1 M6 (FLAT D6)\nG0 X0 Y0 Z20\nG1 Z-1 F200\nX20 F600\nG0 Z20\nM30\n");
+  EXPECT_EQ(run_camber(folder, "-q init p.nc -o job.toml").status, 0);
+  const auto check = run_camber(folder, "check --job job.toml");
+  EXPECT_EQ(check.status, 0) << check.err;
+  EXPECT_NE(check.err.find("p.nc:4:1: warning: the program names no spindle speed; by the feed, 4200 rpm for T1 are "
+                           "assumed; S in the program was expected [spindle-assumed]"),
+            std::string::npos)
+      << check.err;
 }
 
 }  // namespace

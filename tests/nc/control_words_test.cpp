@@ -336,5 +336,18 @@ TEST(FirstMotion, IsSaidAndKeptWhereItIsDetermined) {
   EXPECT_TRUE(line.moves.moves[0].reference);
 }
 
+TEST(ControlWords, SplinesOfLinuxCncAreRefusedByName) {
+  const auto said = [](const std::string& block) {
+    return read_text("G0 X0 Y0 Z0\nF100\n" + block + "\nM2\n", as("linuxcnc")).messages;
+  };
+  using Messages = std::vector<std::string>;
+  EXPECT_EQ(said("G5 X10 Y5 I3 J0 P-3 Q0"), Messages{"p.nc:3:1: error: G5 (spline) is not supported [not-read]"});
+  EXPECT_EQ(said("G5.1 X20 Y0 I5 J5"), Messages{"p.nc:3:1: error: G5.1 (spline) is not supported [not-read]"});
+  EXPECT_EQ(said("G5.2 X1 Y1 P1 L3"), Messages{"p.nc:3:1: error: G5.2 (spline) is not supported [not-read]"});
+  EXPECT_EQ(said("G38.3 Z-5"), Messages{"p.nc:3:1: error: G38.3 (probing) is not supported [not-read]"});
+  EXPECT_EQ(said("M67 E0 Q1.5"),
+            Messages{"p.nc:3:1: warning: M67 is not known; it is assumed to have no effect on the path [unknown-m]"});
+}
+
 }  // namespace
 }  // namespace camber::nc

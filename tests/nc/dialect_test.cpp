@@ -80,6 +80,8 @@ TEST(Dialects, AreRecognisedByTheirOwnConstructs) {
     EXPECT_EQ(shown("M97 P5\nM30\nN5 M99\n") == &dialect, dialect.shown_by_m97);
   }
   EXPECT_EQ(shown("#1=[5 AND 2]\nG0 X#1\n"), nullptr);
+  EXPECT_EQ(shown("G28.1\n"), dialect_named("linuxcnc"));
+  EXPECT_EQ(dialect_shown_by(read_text("G0 X1\n", units(), "part.NGC").program), dialect_named("linuxcnc"));
 }
 
 }  // namespace

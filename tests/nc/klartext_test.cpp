@@ -486,9 +486,6 @@ TEST(Klartext, WrongProgramsByTheirMessages) {
   EXPECT_EQ(one("L X+5 M117\n4 L X+6 M55"),
             "p.h:5:9: warning: M55 is a function of the machine's maker; what it moves is not known, and it is passed "
             "over [machine-function]");
-  EXPECT_EQ(one("L X+5 FZ0.1"),
-            "p.h:4:3: error: FZ (feed per tooth) needs the number of teeth of the tool table and is not supported; F "
-            "was expected [not-supported]");
   EXPECT_EQ(
       one("L Z-5 RND R2"),
       "p.h:4:9: error: RND is no word of a Klartext block; coordinates, R0, F, DR or M were expected [not-a-word]");
@@ -578,6 +575,78 @@ TEST(KlartextEmission, ARadiusStaysARadius) {
       edited("3 CR X+20 Y+0 R+12 DR-\n", {{.move = 1, .end_mm = Vec3(20.2, 0, 0), .center_mm = Vec3(10.1, -6.6, 0)}})
           .find("3 CR X+20.2 Y+0 R+12."),
       0u);
+}
+
+TEST(Klartext, WordsThatABlockDoesNotHaveAreErrors) {
+  const auto one = [](const std::string& line) {
+    const Messages all = said(line + "\n");
+    return all.empty() ? std::string() : all.front();
+  };
+  EXPECT_EQ(one("L PR+10 PA+30"), "p.h:4:3: error: PR has no meaning in a block that begins with L [not-a-word]");
+  EXPECT_EQ(one("L X+10 R+5"), "p.h:4:8: error: R has no meaning in a block that begins with L [not-a-word]");
+  EXPECT_EQ(one("L X+10 DR+"), "p.h:4:8: error: DR has no meaning in a block that begins with L [not-a-word]");
+  EXPECT_EQ(one("L X+10 LEN15"), "p.h:4:8: error: LEN has no meaning in a block that begins with L [not-a-word]");
+  EXPECT_EQ(one("L X+10 NX+0"), "p.h:4:8: error: NX has no meaning in a block that begins with L [not-a-word]");
+  EXPECT_EQ(one("L X+10 TZ+1"), "p.h:4:8: error: TZ has no meaning in a block that begins with L [not-a-word]");
+  EXPECT_EQ(one("CC X+0 Y+0 F100"), "p.h:4:12: error: F has no meaning in a block that begins with CC [not-a-word]");
+  EXPECT_EQ(one("CR X+5 Y+5 R+9 PR+3 DR+"),
+            "p.h:4:16: error: PR has no meaning in a block that begins with CR [not-a-word]");
+  EXPECT_EQ(one("L X+10 F100 F200"), "p.h:4:13: error: F stands twice in the block; once was expected [repeated-word]");
+  EXPECT_EQ(one("CYCL DEF 200 Q200=2 XX=3"),
+            "p.h:4:21: error: XX=3 in CYCL DEF 200; Q parameters were expected [not-a-word]");
+  EXPECT_EQ(one("CYCL DEF 32.1 TOLERANCE"),
+            "p.h:4:16: error: CYCL DEF 32.1 without a number; T0.02 or nothing was expected [tolerance]");
+  EXPECT_EQ(one("CYCL DEF 32.2 HSCMODE 1"),
+            "p.h:4:15: error: HSCMODE in CYCL DEF 32.2; HSC-MODE:0, HSC-MODE:1 or TA was expected [tolerance]");
+  EXPECT_EQ(one("FUNCTION MODE TURN"),
+            "p.h:4:1: error: FUNCTION MODE (turning) is not supported; milling blocks were expected [not-supported]");
+  EXPECT_EQ(one("POLARKIN OFF"),
+            "p.h:4:1: error: POLARKIN (polar kinematics) is not supported; X, Y and Z were expected [not-supported]");
+  EXPECT_EQ(one("FUNCTION LIFTOFF TCS Z+0.5"), "p.h:4:1: warning: FUNCTION LIFTOFF is read without effect [no-effect]");
+}
+
+TEST(Klartext, FeedsPerToothAndPerTurn) {
+  const auto feed = [](const std::string& lines) {
+    const Read r = read_lines(with_start(lines));
+    EXPECT_FALSE(r.diagnostics.has_errors()) << lines << r.messages.front();
+    return mm_per_min_from_mm_per_s(r.moves.moves.back().feed_mm_per_s);
+  };
+  EXPECT_NEAR(feed("L X+5 FU0.2\n"), 200, 1e-9);
+  EXPECT_NEAR(feed("L X+5 FZ0.1\n"), 200, 1e-9);
+  EXPECT_NEAR(feed("TOOL CALL 2 Z FU0.3 S2000\nL X+5\n"), 600, 1e-9);
+  EXPECT_NEAR(feed("TOOL CALL 2 Z S2000 FZ0.05\nL X+5 FAUTO\n"), 200, 1e-9);
+  EXPECT_NEAR(feed("L X+5 F0.2 M136\n"), 200, 1e-9);
+  EXPECT_NEAR(feed("L X+5 F0.2 M136\nL X+9 F300 M137\n"), 300, 1e-9);
+  EXPECT_EQ(said("L X+5 FZ0.1\n"),
+            Messages{"p.h:4:1: warning: FZ needs the number of teeth of tool 1, which stands in the tool table of the "
+                     "control; 2 are assumed [teeth-unknown]"});
+}
+
+TEST(Klartext, CallsOfARefusedCycleAreNotASecondError) {
+  EXPECT_EQ(said("CYCL DEF 251 POCKET Q215=0\nL X+5 FMAX M99\n"),
+            Messages{"p.h:4:1: error: CYCL DEF 251 (a pocket, slot or stud) is not supported; the finished path was "
+                     "expected [not-supported]"});
+  EXPECT_EQ(said("CYCL DEF 392 NAME Q1=0\nL X+5 FMAX M99\n"),
+            Messages{"p.h:4:1: warning: CYCL DEF 392 is a cycle of the machine's maker; what it does is not known, and "
+                     "it is passed over [machine-cycle]"});
+}
+
+TEST(Klartext, FunctionDwellWaits) {
+  EXPECT_NEAR(read_lines(with_start("FUNCTION DWELL TIME2.5\n")).moves.moves.back().dwell_s, 2.5, 1e-12);
+  EXPECT_NEAR(read_lines(with_start("FUNCTION DWELL REV10\n")).moves.moves.back().dwell_s, 0.6, 1e-12);
+  EXPECT_EQ(said("FUNCTION DWELL 3\n"),
+            Messages{"p.h:4:16: error: FUNCTION DWELL without TIME or REV; TIME10 was expected [dwell]"});
+}
+
+TEST(Klartext, TextBehindTheEndIsSaid) {
+  EXPECT_EQ(read_text("BEGIN PGM P MM\nL X+1 Y+1 Z+1 FMAX\nEND PGM P MM\n; comment\nL X+9 FMAX\n", {}, "p.h").messages,
+            Messages{"p.h:5:1: warning: text behind END PGM is no part of the program and is not read [after-end]"});
+}
+
+TEST(Klartext, AnArcAtRapidTakesTheFeedBefore) {
+  const Read r = read_lines(with_start("L X+10 Y+0\nCR X+20 Y+0 R+5 DR+ FMAX\n"));
+  EXPECT_EQ(r.messages, Messages{"p.h:5:1: warning: an arc with FMAX is read with the F before it [arc-at-rapid]"});
+  EXPECT_NEAR(r.moves.moves.back().feed_mm_per_s, 10, 1e-12);
 }
 
 }  // namespace

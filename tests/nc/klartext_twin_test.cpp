@@ -109,10 +109,10 @@ class Twins {
   }
 
   /// In the plane of two axes: a quarter, a half, three quarters or all of a circle with a corner of a square.
-  void arc_by_centre() {
+  void arc_by_centre(int last_plane = 2) {
     if (feed_ == 0) return;
     choose_feed();
-    const int plane = pick(0, 2);  // XY, ZX, YZ
+    const int plane = pick(0, last_plane);  // XY, ZX, YZ
     const int first = plane == 0 ? 0 : plane == 1 ? 2 : 1, second = plane == 0 ? 1 : plane == 1 ? 0 : 2;
     const int i = pick(-9000, 9000), j = pick(-9000, 9000), quarters = pick(1, 4);
     const bool ccw = pick(0, 1) == 1;
@@ -242,8 +242,8 @@ class Twins {
   void frame() {
     if (feed_ == 0) return;
     frames_ = true;
-    const int kind = pick(0, 3), a = pick(-20000, 20000), b = pick(-20000, 20000), angle = pick(-170, 170);
-    constexpr const char* kOff[] = {"G52 X0 Y0", "G69", "G50.1", "G50"};
+    const int kind = pick(0, 4), a = pick(-20000, 20000), b = pick(-20000, 20000), angle = pick(-170, 170);
+    constexpr const char* kOff[] = {"G52 X0 Y0", "G69", "G50.1", "G50", "G69\nG52 X0 Y0"};
     switch (kind) {
       case 0:
         iso_ += fmt::format("G52 X{} Y{}\n", mm(a, false), mm(b, false));
@@ -261,6 +261,11 @@ class Twins {
         line("CYCL DEF 8.0 MIRROR IMAGE");
         line("CYCL DEF 8.1 X");
         break;
+      case 4:
+        iso_ += fmt::format("G52 X{} Y{}\nG68 X0 Y0 R{}\n", mm(a, false), mm(b, false), angle);
+        line(fmt::format("TRANS DATUM AXIS X{} Y{}", mm(a, true), mm(b, true)));
+        line(fmt::format("TRANS ROTATION ROT{:+}", angle));
+        break;
       default:
         iso_ += "G51 X0 Y0 Z0 P1.5\n";
         line("CYCL DEF 11.0 SCALING");
@@ -272,6 +277,10 @@ class Twins {
          fmt::format("L X{} Y{} Z{} FMAX", mm(place_[0], true), mm(place_[1], true), mm(place_[2], true)));
     straight(false);
     arc_by_radius();
+    arc_by_centre(0);
+    helix();
+    steps();
+    polar();
     straight(false);
     iso_ += std::string(kOff[kind]) + (kind == 2 ? " X0\n" : "\n");
     switch (kind) {
@@ -287,6 +296,10 @@ class Twins {
       case 2:
         line("CYCL DEF 8.0 MIRROR IMAGE");
         line("CYCL DEF 8.1");
+        break;
+      case 4:
+        line("TRANS DATUM RESET");
+        line("TRANS ROTATION RESET");
         break;
       default:
         line("CYCL DEF 11.0 SCALING");
@@ -335,6 +348,7 @@ class Twins {
     arc_by_centre();
     helix();
     steps();
+    polar();
     straight(false);
   }
 

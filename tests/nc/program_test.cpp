@@ -172,5 +172,14 @@ TEST(NcReader, NoTextMakesItCrash) {
   }
 }
 
+TEST(Program, ATextBehindTheFirstPercentIsItsName) {
+  for (const char* first : {"%1234", "% PART 7 / SIDE 2", "%O1234", "%", "% (PART)"}) {
+    SCOPED_TRACE(first);
+    const Read r = read_clean(std::string(first) + "\nG21 G90 G0 X1. Y2. Z3.\nM30\n%\n");
+    ASSERT_EQ(r.moves.moves.size(), 1u);
+    expect_near_mm(r.moves.moves[0].end_mm, {1, 2, 3});
+  }
+}
+
 }  // namespace
 }  // namespace camber::nc

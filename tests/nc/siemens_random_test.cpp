@@ -232,6 +232,8 @@ class TwinWriter {
     line(true);
     line(false);
     arc();
+    increments();
+    subprogram();
     if (mirrored) add("G50.1 X0.", "; back");
     add("G69\nG52 X0. Y0. Z0.", "TRANS");
     line(true);
@@ -256,6 +258,8 @@ class TwinWriter {
     line(true);
     line(false);
     arc();
+    increments();
+    subprogram();
   }
 
   std::mt19937 random_;

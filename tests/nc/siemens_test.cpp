@@ -3,8 +3,11 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
 #include "nc/emit.h"
+#include "nc/language.h"
 #include "nc/mode_words.h"
 #include "nc/siemens/words.h"
 #include "test_paths.h"
@@ -406,6 +409,47 @@ TEST(Siemens, EveryWordStandsInThePage) {
       documented.insert(line.substr(2, line.find(" |", 2) - 2));
   for (const siemens::WordRow& row : siemens::word_rows()) known.insert(std::string(row.name));
   EXPECT_EQ(documented, known);
+}
+
+TEST(Siemens, TheSpindleThatTurnsIsTheOneThatCuts) {
+  const auto spindle = [](const std::string& lines) {
+    const Read r = read_siemens("T1 M6\n" + lines + "\nG0 X0 Y0 Z5\nG1 X10 F100\nM30\n");
+    EXPECT_EQ(r.messages, Messages{}) << lines;
+    const ModalState& s = r.moves.state_of(r.moves.moves.back());
+    return fmt::format("{} {}", static_cast<int>(s.spindle), s.spindle_speed_rpm);
+  };
+  const std::string clockwise = fmt::format("{} 2000", static_cast<int>(SpindleDirection::clockwise));
+  EXPECT_EQ(spindle("S2000 M3"), clockwise);
+  EXPECT_EQ(spindle("S1=2000 M1=3"), clockwise);
+  EXPECT_EQ(spindle("S3=2000 M3=3"), clockwise);
+  EXPECT_EQ(spindle("S3=2000\nM3=3"), clockwise);
+  EXPECT_EQ(spindle("SETMS(3)\nS2000 M3"), clockwise);
+  EXPECT_EQ(spindle("S2000 M13"), clockwise);
+  EXPECT_EQ(spindle("S2000 M3\nM2=4"), clockwise);
+}
+
+TEST(Siemens, ASpindleThatTheTextDoesNotStartIsAssumed) {
+  EXPECT_EQ(read_siemens("T1 M6\nS2000\nG0 X0 Y0 Z5\nG1 X10 F100\nM30\n").messages,
+            Messages{"p.mpf:4:1: warning: the program has S, but neither M3 nor M4; a spindle that a subprogram or "
+                     "another M function of the machine starts clockwise is assumed [spindle-assumed]"});
+  EXPECT_EQ(read_siemens("T1 M6\nM333\nG0 X0 Y0 Z5\nM30\n").messages,
+            Messages{"p.mpf:2:1: warning: M333 is a function of the machine's maker; what it moves is not known, and "
+                     "it is passed over [machine-function]"});
+}
+
+TEST(Siemens, ALineOfKlartextDoesNotMakeAnotherLanguageOfAProgramNamedMpf) {
+  const auto language = [](const std::string& name, const std::string& text) {
+    return std::string(recognize_language(SourceText(name, text)).language->name);
+  };
+  EXPECT_EQ(language("p.mpf", "G17 G90\nG1 X10 F100\nCT X20 Y10\n"), "siemens");
+  EXPECT_EQ(language("p.mpf", "BEGIN PGM A MM\nTOOL CALL 1 Z\nL X+5\n"), "heidenhain");
+}
+
+TEST(Siemens, CharactersAndNamesOfFiles) {
+  EXPECT_EQ(value_of("'A'"), 65);
+  EXPECT_EQ(read_siemens("EXTCALL \"PART.SPF\"\n").messages,
+            Messages{"p.mpf:1:1: error: no subprogram PART: neither %_N_PART_SPF in this file nor PART.SPF beside it "
+                     "[subprogram]"});
 }
 
 }  // namespace
