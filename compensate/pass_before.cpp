@@ -170,9 +170,9 @@ std::unique_ptr<Version> with_less_left(const Task& task, const Version& given) 
   const nc::Emission emission = text_of(given.source, path, splits.kept());
   machine::Job job = task.job;
   job.operations =
-      moved_ranges(simulate::as_lines(job.operations, program.text(), program.moves_in_part()), emission.block_of_line);
+      moved_ranges(motion::as_lines(job.operations, program.text(), program.moves_in_part()), emission.block_of_line);
   Diagnostics ignored;  // the given program's
-  SimulatedProgram made = simulate::simulate_motion(SourceText(job.program, emission.text), job, {}, ignored);
+  SimulatedProgram made = motion::simulate_motion(SourceText(job.program, emission.text), job, {}, ignored);
   EarlierCuts cuts{
       .text = {emission.text, emission.block_of_line, std::vector<bool>(emission.block_of_line.size(), false)},
       .moves = moves_as_emitted(program.moves_in_part(), made.moves_in_part(), emission),

@@ -30,7 +30,7 @@ void check_plausibility(const machine::Job& job, const simulate::SimulatedProgra
 void check_job_values(const machine::Job& job, Diagnostics& diagnostics);
 
 /// The checks that every command makes of a job's program before its work: whether the machine can run it
-/// (simulate/machine_checks.h), and whether the job is plausible.
+/// (motion/machine_checks.h), and whether the job is plausible.
 void check_program(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics);
 
 }  // namespace camber::plausibility

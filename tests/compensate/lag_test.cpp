@@ -66,7 +66,7 @@ TEST(ServoLag, OfABoreIsTakenBackByItsRadius) {
   EXPECT_TRUE(c.verdict.within_tolerance);
   // The arcs of the emitted text, as the axes run them by the closed form.
   Diagnostics read;
-  const auto emitted = simulate::simulate_motion(SourceText(job.program, c.emitted.text), job, {}, read);
+  const auto emitted = motion::simulate_motion(SourceText(job.program, c.emitted.text), job, {}, read);
   const nc::Interpretation& moves = emitted.moves_in_part();
   int halves = 0;
   for (const nc::Move& m : moves.moves) {

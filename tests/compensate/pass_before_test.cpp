@@ -65,7 +65,7 @@ TEST(PassBefore, LeavesLessWhereABowRemains) {
   EXPECT_LE(c.safety.others.gouge_depth_p999_um, c.safety.depth_limit_um);
   // The line of the pass before lies where its wall leaves 0.1 mm.
   Diagnostics read;
-  const auto emitted = simulate::simulate_motion(SourceText(job.program, c.emitted.text), job, {}, read);
+  const auto emitted = motion::simulate_motion(SourceText(job.program, c.emitted.text), job, {}, read);
   double before_y_mm = 0;
   for (const nc::Move& m : emitted.moves_in_part().moves)
     if (m.kind == nc::MoveKind::linear && m.end_mm.x() > 17 && m.end_mm.y() < -4.05) before_y_mm = m.end_mm.y();
