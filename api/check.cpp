@@ -68,8 +68,8 @@ bool is_to_cut(const nc::Interpretation& moves) {
   });
 }
 
-/// Prepares the job as predict does up to its sweeps: a height map tells of clearance in seconds. Where none describes the job,
-/// all of it.
+/// Prepares the job as predict does up to its sweeps: a height map tells of clearance in seconds. Where none describes
+/// the job, all of it.
 double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
   const auto check = [&](const simulate::SimulatedProgram& program) {
     plausibility::check_program(job, program, diagnostics);
