@@ -78,7 +78,8 @@ CLI::Validator material_name() {
 
 namespace {
 
-/// Machines of which a program that turns rotary axes takes the first that has them.
+/// Machines of which a program that turns rotary axes takes the first that has them; those behind the first only where
+/// the program cannot be read with the tool upright.
 constexpr std::array kFiveAxisPresets{"preset:five-axis-trunnion", "preset:five-axis-trunnion-bc"};
 
 /// As the machine reads it that the arguments name: words of rotary axes where it has some.
@@ -108,6 +109,7 @@ ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, D
   });
   if (turns && arguments.machine.empty())
     for (const char* preset : kFiveAxisPresets) {
+      if (preset != kFiveAxisPresets.front() && !upright.has_errors()) break;
       Diagnostics tilted = diagnostics;
       nc::Interpretation with_axes = nc::interpret(text, interpreter_of(preset, arguments.interpreter), tilted);
       if (tilted.has_errors() || !turns_the_tool(nc::summarize(text, with_axes))) continue;
