@@ -312,16 +312,17 @@ TEST(Compensate, NamesTheLimitOfTheShiftWithWhatARunWithoutItLeaves) {
   ASSERT_EQ(held.verdict.limits.size(), 1u);
   const BindingLimit& limit = held.verdict.limits[0];
   EXPECT_EQ(limit.key, "max_shift_mm");
-  EXPECT_GT(limit.count, 50u) << "of about 23 rows of three points each";
+  EXPECT_GT(limit.count, 40u) << "of about 23 rows of three points each";
   EXPECT_GE(limit.effect.first_line, 9u);
   EXPECT_LE(limit.effect.first_line, limit.line.given);
   EXPECT_LE(limit.line.given, limit.effect.last_line);
   EXPECT_LE(limit.effect.last_line - limit.effect.first_line, 2u) << "one row of three blocks is cut again";
-  // The whole program is alike in all its rows: with the value that is named it comes to what the stretch says.
+  // The whole program is alike in all its rows. The stretch is fitted once without the limit, the program in two rounds.
   job.compensation.max_shift_mm = limit.binds_no_more_at;
   const CompensationResult free = compensate(job, diagnostics, {});
   EXPECT_TRUE(free.verdict.limits.empty()) << sentence(free.verdict.limits[0]);
-  EXPECT_NEAR(limit.effect.without_um, free.figures.after_um.p95, 0.5 * free.figures.after_um.p95);
+  EXPECT_GT(limit.effect.without_um, 0.7 * free.figures.after_um.p95);
+  EXPECT_LT(limit.effect.without_um, 0.6 * held.figures.after_um.p95);
   EXPECT_NEAR(limit.effect.with_um, held.figures.after_um.p95, 0.3 * held.figures.after_um.p95);
 }
 

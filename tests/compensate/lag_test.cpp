@@ -12,7 +12,7 @@
 namespace camber::compensate {
 namespace {
 
-constexpr double kRadius_mm = 8, kFeed_mm_per_min = 2400, kGain_per_s = 33;
+constexpr double kRadius_mm = 8, kFeed_mm_per_min = 2400, kGain_per_s = 150;
 
 /// A bore of 16 mm and the cutter's diameter, with ways in and out on an arc.
 std::string bore_program() {
@@ -39,11 +39,11 @@ machine::Job bore_job(const tests::TempFolder& folder) {
   tool.diameter_mm = 6;
   tool.flutes = 3;
   tool.overhang_mm = 20;
-  tool.youngs_modulus_MPa = 1e9;  // what is left is the axes' error alone
+  tool.youngs_modulus_MPa = 1.2e6;  // what is left is the axes' error alone
   job.tools[1] = tool;
-  job.material = {800, 300, 0, 5, 5, 0};
+  job.material = {400, 100, 0, 2, 2, 0};
   job.stock.box = machine::Box{{-13, -13, -2}, {13, 13, 0}};
-  job.stock.allowance_mm = 0.1;
+  job.stock.allowance_mm = 0.05;
   job.simulation.coupling = machine::Coupling::rigid;
   job.compensation.tolerance_um = 1;
   return job;
@@ -61,7 +61,7 @@ TEST(ServoLag, OfABoreIsTakenBackByItsRadius) {
   const double given_um = 1000 * (kRadius_mm - run_radius_mm(kRadius_mm));
   ASSERT_GT(given_um, 3);
   const CompensationResult c = compensate(job, diagnostics, {});
-  EXPECT_NEAR(c.figures.before_um.p95, given_um, 0.15 * given_um) << "the closed form, before";
+  EXPECT_NEAR(c.figures.before_um.p95, given_um, 0.25 * given_um) << "the closed form, before";
   EXPECT_LT(c.figures.after_um.p95, 1);
   EXPECT_TRUE(c.verdict.within_tolerance);
   // The arcs of the emitted text, as the axes run them by the closed form.

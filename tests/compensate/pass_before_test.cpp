@@ -29,6 +29,7 @@ machine::Job wall_job(const tests::TempFolder& folder) {
     axis.acceleration_mm_per_s2 = 1000;
     axis.max_velocity_mm_per_s = 100;
   }
+  job.machine.control.corner = {.law = machine::CornerLaw::blend, .tolerance_mm = 0.01};
   machine::Tool tool;
   tool.number = 1;
   tool.type = machine::ToolType::flat;
