@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "checks/setup_checks.h"
+#include "checks/travel.h"
 #include "deflection/beam.h"
 #include "machine/force_law.h"
 #include "plausibility/rules.h"
@@ -170,6 +171,10 @@ void look_at_material(const Evidence& e, Diagnostics& diagnostics) {
             "up to {:g} times was expected (are all in MPa?)",
             sideways, sideways / force, force, kSideways),
         Severity::warning);
+}
+
+void look_at_travel(const Evidence& e, Diagnostics& diagnostics) {
+  checks::check_travel(e.job, e.program, diagnostics);
 }
 
 }  // namespace camber::plausibility
