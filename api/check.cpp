@@ -141,7 +141,7 @@ Checked check_program(const CheckAsked& asked, Diagnostics& found,
   const machine::Machine* machine = asked.machine;
   const machine::Job* job = asked.job;
   Checked checked{nc::interpret(text, options_as_read(asked.program.options, machine, job), found), {.text = &text}};
-  if (job) motion::assume_speeds(*job, text, checked.moves, found);
+  if (job) motion::assume_spindle(*job, text, checked.moves, found);
   found.throw_if_errors();
   read(checked.moves);
   if (machine) motion::check_machine(*machine, text, checked.moves, found);

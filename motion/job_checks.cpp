@@ -77,17 +77,25 @@ double usual_rpm(const machine::Tool& tool, double feed_mm_per_min) {
 
 }  // namespace
 
-void assume_speeds(const machine::Job& job, const nc::Program& program, nc::Interpretation& moves,
-                   Diagnostics& diagnostics) {
-  if (std::ranges::any_of(moves.states, [](const nc::ModalState& s) {
-        return s.spindle_speed_rpm > 0 || s.spindle != nc::SpindleDirection::stopped;
-      }))
+void assume_spindle(const machine::Job& job, const nc::Program& program, nc::Interpretation& moves,
+                    Diagnostics& diagnostics) {
+  if (starts_spindle(moves)) return;
+  const auto cuts = [](const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; };
+  if (std::ranges::any_of(moves.states, [](const nc::ModalState& s) { return s.spindle_speed_rpm > 0; })) {
+    const auto first = std::ranges::find_if(
+        moves.moves, [&](const nc::Move& m) { return cuts(m) && moves.state_of(m).spindle_speed_rpm > 0; });
+    for (nc::ModalState& s : moves.states)
+      if (s.spindle_speed_rpm > 0) s.spindle = nc::SpindleDirection::clockwise;
+    if (first != moves.moves.end())
+      diagnostics.add(program.source.diagnostic(Severity::warning, program.blocks[first->block].offset, kSpindleAssumed,
+                                                "spindle-assumed"));
     return;
+  }
   std::map<int, double> feeds_mm_per_min;
   const nc::Move* first = nullptr;
   for (const nc::Move& m : moves.moves) {
     const int tool = moves.state_of(m).tool;
-    if ((m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) || !job.tools.contains(tool)) continue;
+    if (!cuts(m) || !job.tools.contains(tool)) continue;
     if (!first) first = &m;
     double& feed = feeds_mm_per_min[tool];
     feed = std::max(feed, mm_per_min_from_mm_per_s(m.feed_mm_per_s));

@@ -146,6 +146,12 @@ bool has_spindle(const nc::Interpretation& moves) {
 
 }  // namespace
 
+bool starts_spindle(const nc::Interpretation& moves) {
+  return std::ranges::any_of(moves.events, [](const nc::Event& e) {
+    return e.kind == nc::EventKind::spindle_clockwise || e.kind == nc::EventKind::spindle_counter_clockwise;
+  });
+}
+
 void check_machine(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                    Diagnostics& diagnostics) {
   MachineCheck(machine, program, moves, diagnostics).run();
@@ -192,6 +198,8 @@ void check_spindle(const nc::Program& program, const nc::Interpretation& moves, 
       return say(m, Severity::warning,
                  "the program never starts a spindle; S above zero and M3 were expected, unless it runs in air",
                  "spindle-stopped");
+    if (s.spindle_speed_rpm > 0 && !starts_spindle(moves))
+      return say(m, Severity::warning, kSpindleAssumed, "spindle-assumed");
     if (s.spindle == nc::SpindleDirection::stopped || s.spindle_speed_rpm <= 0)
       say(m, Severity::error,
           fmt::format("T{} cuts here with the spindle {}; S above zero and M3 were expected", s.tool,

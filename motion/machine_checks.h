@@ -22,9 +22,17 @@ void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Di
 /// A line straight up: the tool leaves what it has cut, as it may with the spindle stopped.
 bool withdraws(const nc::Interpretation& moves, const nc::Move& move);
 
+/// M3 or M4 stands in the program. Where neither does, a subprogram or another M function of the machine starts the
+/// spindle.
+bool starts_spindle(const nc::Interpretation& moves);
+inline constexpr const char* kSpindleAssumed =  ///< [spindle-assumed]
+    "the program has S, but neither M3 nor M4; a spindle that a subprogram or another M function of the machine starts "
+    "clockwise is assumed";
+
 /// For a program without a job, where every line and arc but those straight up counts as a cut: errors
-/// [spindle-stopped] and [spindle-direction] (cutters are right-hand; tapping aside). A program without any spindle
-/// speed or start may be one to run in air, as `camber protocol` writes them: only a warning.
+/// [spindle-stopped] and [spindle-direction] (cutters are right-hand; tapping aside), warning [spindle-assumed]. A
+/// program without any spindle speed or start may be one to run in air, as `camber protocol` writes them: only a
+/// warning.
 void check_spindle(const nc::Program& program, const nc::Interpretation& moves, Diagnostics& diagnostics);
 
 }  // namespace camber::motion

@@ -20,7 +20,7 @@ SimulatedProgram read_moves(SourceText source, const Job& job, Diagnostics& diag
   const kinematics::ReadingOptions reading = kinematics::reading_of(job);
   nc::Program text = nc::read_program(std::move(source), diagnostics);
   nc::Interpretation moves = kinematics::read_moves(text, job.machine, reading, diagnostics);
-  assume_speeds(job, text, moves, diagnostics);
+  assume_spindle(job, text, moves, diagnostics);
   SimulatedProgram out{kinematics::MachineProgram(std::move(text), std::move(moves), job.machine)};
   diagnostics.throw_if_errors();
   kinematics::check_on_part(out, diagnostics);

@@ -123,38 +123,12 @@ std::optional<LanguageId> language_asked_for(const InterpreterOptions& options) 
   return options.dialect ? std::optional(options.dialect->language) : std::nullopt;
 }
 
-namespace {
-
-/// A program without M3 and M4 leaves its spindle to a subprogram or another M function of the machine.
-void complete_spindle(const Program& program, Interpretation& out, Diagnostics& diagnostics) {
-  if (std::ranges::any_of(out.events, [](const Event& e) {
-        return e.kind == EventKind::spindle_clockwise || e.kind == EventKind::spindle_counter_clockwise;
-      }))
-    return;
-  const auto first = std::ranges::find_if(out.moves, [&](const Move& m) {
-    const bool cuts = m.kind == MoveKind::linear || m.kind == MoveKind::arc;
-    return cuts && !m.reference && out.state_of(m).spindle_speed_rpm > 0;
-  });
-  if (first == out.moves.end()) return;
-  for (ModalState& s : out.states)
-    if (s.spindle_speed_rpm > 0) s.spindle = SpindleDirection::clockwise;
-  diagnostics.add(program.source.diagnostic(
-      Severity::warning, program.blocks[first->block].offset,
-      "the program has S, but neither M3 nor M4; a spindle that a subprogram or another M function of the machine "
-      "starts clockwise is assumed",
-      "spindle-assumed"));
-}
-
-}  // namespace
-
 /// A dialect of another language says nothing about the program: the machine's control may be given for others.
 Interpretation interpret(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics) {
   const Language& language = language_of(program);
   InterpreterOptions own = options;
   if (own.dialect && own.dialect->language != language.id) own.dialect.reset();
-  Interpretation out = language.interpret(program, own, diagnostics);
-  complete_spindle(program, out, diagnostics);
-  return out;
+  return language.interpret(program, own, diagnostics);
 }
 
 }  // namespace camber::nc

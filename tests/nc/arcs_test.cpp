@@ -59,7 +59,8 @@ TEST(Arcs, WordsThatMakeNoArcAreNamed) {
   w.i_mm.reset();
   w.end_mm = w.start_mm;
   EXPECT_EQ(make_arc(w).error,
-            "an arc with R ends where it starts, which leaves its centre open; I J K were expected for a full turn");
+            "an arc with R ends where it starts, which leaves its centre open; an arc by its centre was expected for a "
+            "full turn");
 }
 
 /// Any arc, by its centre and by its radius, in every plane: the same circle, the same way round.

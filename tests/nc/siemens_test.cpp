@@ -428,10 +428,7 @@ TEST(Siemens, TheSpindleThatTurnsIsTheOneThatCuts) {
   EXPECT_EQ(spindle("S2000 M3\nM2=4"), clockwise);
 }
 
-TEST(Siemens, ASpindleThatTheTextDoesNotStartIsAssumed) {
-  EXPECT_EQ(read_siemens("T1 M6\nS2000\nG0 X0 Y0 Z5\nG1 X10 F100\nM30\n").messages,
-            Messages{"p.mpf:4:1: warning: the program has S, but neither M3 nor M4; a spindle that a subprogram or "
-                     "another M function of the machine starts clockwise is assumed [spindle-assumed]"});
+TEST(Siemens, FunctionsOfTheMachinesMakerAreSaid) {
   EXPECT_EQ(read_siemens("T1 M6\nM333\nG0 X0 Y0 Z5\nM30\n").messages,
             Messages{"p.mpf:2:1: warning: M333 is a function of the machine's maker; what it moves is not known, and "
                      "it is passed over [machine-function]"});
