@@ -14,7 +14,7 @@ FeedCells ten_cells() {
       SourceText("p.nc", "G21 G90 G94\nT1 M6\nS1000 M3\nG0 X0 Y0 Z0\nG1 X10 F600\nM30\n"), {}, {}, diagnostics)};
   program.selected.assign(program.moves_in_part().moves.size(), true);
   program.holes.assign(program.moves_in_part().moves.size(), removal::HoleMove::none);
-  return {program, std::vector<double>(program.moves_in_part().moves.size(), 1.0)};
+  return {program, machine::Machine{}, std::vector<double>(program.moves_in_part().moves.size(), 1.0)};
 }
 
 struct Predictions {

@@ -18,7 +18,7 @@ FeedCells line_cells() {
       SourceText("p.nc", "G21 G90 G94\nT1 M6\nS1000 M3\nG0 X0 Y0 Z0\nG1 X100 F600\nM30\n"), {}, {}, diagnostics)};
   program.selected.assign(program.moves_in_part().moves.size(), true);
   program.holes.assign(program.moves_in_part().moves.size(), removal::HoleMove::none);
-  return {program, std::vector<double>(program.moves_in_part().moves.size(), 1.0)};
+  return {program, machine::Machine{}, std::vector<double>(program.moves_in_part().moves.size(), 1.0)};
 }
 
 constexpr FeedBounds kBounds{

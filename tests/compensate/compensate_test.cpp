@@ -317,7 +317,8 @@ TEST(Compensate, NamesTheLimitOfTheShiftWithWhatARunWithoutItLeaves) {
   EXPECT_LE(limit.effect.first_line, limit.line.given);
   EXPECT_LE(limit.line.given, limit.effect.last_line);
   EXPECT_LE(limit.effect.last_line - limit.effect.first_line, 2u) << "one row of three blocks is cut again";
-  // The whole program is alike in all its rows. The stretch is fitted once without the limit, the program in two rounds.
+  // The whole program is alike in all its rows. The stretch is fitted once without the limit, the program in two
+  // rounds.
   job.compensation.max_shift_mm = limit.binds_no_more_at;
   const CompensationResult free = compensate(job, diagnostics, {});
   EXPECT_TRUE(free.verdict.limits.empty()) << sentence(free.verdict.limits[0]);
