@@ -157,7 +157,7 @@ TEST(LoadRule, ALookAheadCountsWithTheHardnessThatIsFelt) {
 namespace {
 
 /// A straight cut along x whose tip is 2 mm under a block that is higher from x = 25 on.
-struct OperationCut {
+struct ScriptedCut {
   double height_after_mm = 0;  ///< of the block after the step, over the one before
   std::vector<simulate::ForceRegion> regions{};
   double limit_N = 0;
@@ -174,7 +174,7 @@ constexpr int kTeeth = 4;
 constexpr LoadConditions kFeeds{24, 3, 2};
 
 /// The loop of a control that makes its path while it cuts: looks, motion of a tick, passings, rule.
-Cutting run(const OperationCut& how, bool follows) {
+Cutting run(const ScriptedCut& how, bool follows) {
   const Vec3 lo(0, -6, -6);
   const auto distance = [&](const Vec3& p) {
     return std::min(removal::box_distance_mm(p, lo, {60, 6, 0}),
@@ -240,7 +240,7 @@ double in_band(const Cutting& c, double from, double to) {
 }  // namespace
 
 TEST(LoadRuleOnCuts, AStepOfTheStockIsMetWithinTheLimit) {
-  OperationCut how{2.0, {}, 1};
+  ScriptedCut how{2.0, {}, 1};
   const Cutting known = run(how, false);  // in newtons, at the nominal feed
   how.limit_N = 0.85 * peak(known);
   const Cutting constant = run(how, false), follows = run(how, true);
@@ -254,7 +254,7 @@ TEST(LoadRuleOnCuts, AStepOfTheStockIsMetWithinTheLimit) {
 }
 
 TEST(LoadRuleOnCuts, APartThatIsHarderThanAnyoneKnowsKeepsTheLimitByWhatIsFelt) {
-  OperationCut how{0.0, {}, 1};
+  ScriptedCut how{0.0, {}, 1};
   const Cutting known = run(how, false);
   how.limit_N = 1.1 * peak(known);
   how.regions = {{{20, -100, -100}, {38, 100, 100}, 1.4}};

@@ -36,7 +36,7 @@ void set_gain(machine::Job& job, double gain_per_s) {
 
 SimulatedProgram motion(const machine::Job& job, const std::string& text) {
   Diagnostics diagnostics;
-  return simulate_motion(SourceText("p.nc", text), job, {}, diagnostics);
+  return motion::simulate_motion(SourceText("p.nc", text), job, {}, diagnostics);
 }
 
 /// Points of the walls, with the contour error in error_mm.

@@ -62,7 +62,7 @@ struct Cut {
 
 Cut cut_of(const machine::Job& job, const std::string& text) {
   Diagnostics found;
-  Cut out{simulate_motion(SourceText("p.nc", text), job, {}, found), {}};
+  Cut out{motion::simulate_motion(SourceText("p.nc", text), job, {}, found), {}};
   const Target target = make_target(job, out.program, found);
   out.prediction = predict(job, target, out.program, {});
   for (const auto& d : found.all()) EXPECT_NE(d.severity, Severity::error) << d.message;
@@ -174,7 +174,7 @@ TEST(RotaryMotion, ATipThatStandsStillHasStampsOfEveryBlock) {
   std::string text = kStart + "G43.4 H1\nG0 X2 Y1 Z5 B0 C0\nG1 Z-0.2 F300\n";
   for (int b = 1; b <= 8; ++b) text += fmt::format("G1 B{} F1000\n", 5 * b);
   Diagnostics found;
-  const SimulatedProgram program = simulate_motion(SourceText("p.nc", text + "G0 Z20\nM30\n"), job, {}, found);
+  const SimulatedProgram program = motion::simulate_motion(SourceText("p.nc", text + "G0 Z20\nM30\n"), job, {}, found);
   std::map<std::uint32_t, std::size_t> of_block;
   for (const removal::Stamp& stamp : program.path.stamps) ++of_block[program.moves_in_part().moves[stamp.move].block];
   ASSERT_GE(of_block.size(), 9u);

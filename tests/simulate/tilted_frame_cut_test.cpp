@@ -106,7 +106,7 @@ class Writer {
 
 SimulatedProgram motion_of(const machine::Job& job, const std::string& text) {
   Diagnostics found;
-  SimulatedProgram out = simulate_motion(SourceText("p.nc", text), job, {}, found);
+  SimulatedProgram out = motion::simulate_motion(SourceText("p.nc", text), job, {}, found);
   for (const auto& d : found.all()) EXPECT_NE(d.severity, Severity::error) << d.message;
   return out;
 }

@@ -1,16 +1,15 @@
 // What is said of a job before it is cut, against closed forms of the same.
-#include "motion/job_checks.h"
+#include "checks/setup_checks.h"
 
 #include <cmath>
 #include <regex>
 
 #include <gtest/gtest.h>
 
-#include "checks/setup_checks.h"
 #include "nc/interpreter.h"
 #include "tests/support/cutting.h"
 
-namespace camber::motion {
+namespace camber::checks {
 namespace {
 
 /// What check_job says of a line with a slim end mill at this speed.
@@ -28,7 +27,7 @@ std::string said_at(double rpm, double youngs_modulus_MPa) {
                                               " M3\nG0 X0 Y0 Z0\nG1 X10 F100\nM30\n"),
                        found);
   const nc::Interpretation moves = nc::interpret(program, {.inch = false}, found);
-  checks::check_job(job, program, moves, found);
+  check_job(job, program, moves, found);
   return found.all().empty() ? std::string() : to_string(found.all().front());
 }
 
@@ -63,14 +62,14 @@ TEST(ToothFrequency, IsWarnedOfAboveAThirdOfTheFirstNaturalFrequency) {
 TEST(Slenderness, AddsUpWhatBends) {
   machine::Tool tool = testing::make_tool(machine::ToolType::flat, 6, 2, 0);
   tool.overhang_mm = 60;
-  EXPECT_DOUBLE_EQ(checks::slenderness(tool), 10);
+  EXPECT_DOUBLE_EQ(slenderness(tool), 10);
   tool.flute_length_mm = 12;
   tool.shank_diameter_mm = 12;
-  EXPECT_DOUBLE_EQ(checks::slenderness(tool), 12 / 6.0 + 48 / 12.0);
+  EXPECT_DOUBLE_EQ(slenderness(tool), 12 / 6.0 + 48 / 12.0);
   tool.neck_diameter_mm = 5;
   tool.neck_length_mm = 20;
-  EXPECT_DOUBLE_EQ(checks::slenderness(tool), 12 / 6.0 + 20 / 5.0 + 28 / 12.0);
+  EXPECT_DOUBLE_EQ(slenderness(tool), 12 / 6.0 + 20 / 5.0 + 28 / 12.0);
 }
 
 }  // namespace
-}  // namespace camber::motion
+}  // namespace camber::checks
