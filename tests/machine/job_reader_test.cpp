@@ -257,7 +257,8 @@ TEST(JobReader, ReadsGoalAndTimeBudget) {
 
 TEST(JobReader, RefusesLeversThatAreNone) {
   EXPECT_EQ(read(with_more("[compensation]\nlevers = [\"shift\", \"speed\"]\n")).messages,
-            "job.toml:14:10: error: levers names \"speed\"; a list of \"shift\", \"feed\" and \"passes\" was expected "
+            "job.toml:14:10: error: levers names \"speed\"; a list of \"shift\", \"feed\", \"passes\" and "
+            "\"allowance\" was expected "
             "[value-choice]\n"
             "    levers = [\"shift\", \"speed\"]\n"
             "             ^");

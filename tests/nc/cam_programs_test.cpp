@@ -69,7 +69,7 @@ TEST(CamPrograms, AProgramForSinumerikIsReadInItsLanguage) {
   EXPECT_EQ(
       said_of("nc/elmoe_keychain_840d.mpf"),
       (Messages{"elmoe_keychain_840d.mpf:8:8: warning: M50 is a function of the machine's maker; what it moves is "
-                "not known, and it is passed over [machine-function]",
+                "not known, and it is passed over (and 4 more like it) [machine-function]",
                 "elmoe_keychain_840d.mpf:19:34: warning: rotary axis B is not supported; it is assumed to stay at "
                 "0 (and 15 more like it) [rotary-axis]"}));
 }
