@@ -86,9 +86,11 @@ TEST(CompensateCommand, TakesLeversByNameAndSaysWhatIsInReachFirst) {
   EXPECT_NE(run.out.find("\nlevers used: shift to "), std::string::npos) << run.out;
   const auto wrong = run_camber(folder, "compensate job.toml -o b.nc --levers speed,shift");
   EXPECT_EQ(wrong.status, 1);
-  EXPECT_NE(wrong.err.find("error: --levers: levers names \"speed\"; a list of \"shift\", \"feed\" and \"passes\" was "
-                           "expected [value-choice]"),
-            std::string::npos)
+  EXPECT_NE(
+      wrong.err.find(
+          "error: --levers: levers names \"speed\"; a list of \"shift\", \"feed\", \"passes\" and \"allowance\" was "
+          "expected [value-choice]"),
+      std::string::npos)
       << wrong.err;
   const auto idle = run_camber(folder, "compensate job.toml -o b.nc --levers shift --time-budget 5");
   EXPECT_EQ(idle.status, 1);
