@@ -151,8 +151,8 @@ class Inputs(unittest.TestCase):
         with self.assertRaises(camber.InputError) as raised:
             camber.compensate(camber.read_job(SAMPLE / "job.toml"), levers=["shift", "speed"])
         self.assertEqual(raised.exception.id, "value-choice")
-        self.assertEqual(raised.exception.message, 'compensate: levers names "speed"; a list of "shift", "feed" and '
-                                                   '"passes" was expected')
+        self.assertEqual(raised.exception.message, 'compensate: levers names "speed"; a list of "shift", "feed", '
+                                                   '"passes" and "allowance" was expected')
 
     def test_a_job_may_be_read_before_its_program_is_made(self):
         with tempfile.TemporaryDirectory() as folder:
