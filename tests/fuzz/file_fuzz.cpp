@@ -23,7 +23,6 @@
 #include "compensate/measured.h"
 #include "compensate/uncertainty.h"
 #include "compensate/verify.h"
-#include "distribute/section_parts.h"
 #include "dynamics/fit_modes.h"
 #include "machine/copy_operations.h"
 #include "machine/cycle_cases.h"
@@ -286,24 +285,6 @@ void read_record_file(std::string_view bytes) {
     fail("a record that was written reads as another one", text);
 }
 
-template <class Part>
-void hold_part(std::string_view bytes) {
-  try {
-    const std::string once = distribute::bytes_of_part(distribute::part_from<Part>(bytes));
-    if (distribute::bytes_of_part(distribute::part_from<Part>(once)) != once) fail("a part reads as another one");
-  } catch (const BytesMissing&) {
-  }
-}
-
-/// The content of a part of a run in sections, behind its checksum; the first letter chooses the kind.
-void read_part_file(std::string_view bytes) {
-  if (bytes.empty()) return;
-  const std::string_view content = bytes.substr(1);
-  if (bytes[0] % 3 == 0) hold_part<distribute::SweptSection>(content);
-  if (bytes[0] % 3 == 1) hold_part<distribute::SolvedSection>(content);
-  if (bytes[0] % 3 == 2) hold_part<distribute::OwnSolution>(content);
-}
-
 /// An edit of camber ui ("tool.1", tab, "diameter_mm", tab, "8"), a line of "%", and the job's text.
 void edit_job_form(std::string_view bytes) {
   const std::size_t cut = bytes.find("\n%\n");
@@ -350,7 +331,6 @@ constexpr Door kDoors[] = {
     {"tables", read_tables},
     {"plan", read_plan_file},
     {"record", read_record_file},
-    {"part", read_part_file},
     {"form", edit_job_form},
 };
 
