@@ -684,7 +684,7 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
                                options.max_iterations / 4, options.update);
   result.machine = base_with_law(base_of_all, limits.whole);
   choose_starts(result, limits, data);
-  refine_block_time(limits, data, result.machine, options.max_iterations / 3);
+  refine_block_time(limits, data, result.machine, options.max_iterations);
   const double period = result.machine.control.period_s;
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend) {
     bool tried = choose(
