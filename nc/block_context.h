@@ -39,6 +39,7 @@ struct BlockContext {
   BlockWords words{};
   BlockRequest request{};
   bool not_editable_told = false;
+  ReliedEnds relied_ends{};
 
   const Dialect& dialect() const { return options.dialect_or_default(); }
   void error(std::size_t offset, std::string_view check, std::string message, std::string_view alike = {});

@@ -60,6 +60,7 @@ void BlockInterpreter::finish() {
   whole_numbers_.warn();
   radius_.finish();
   modal_.check_tool_changes();
+  at_.relied_ends.fix(at_.out);
 }
 
 MachineFacts BlockInterpreter::facts() const {

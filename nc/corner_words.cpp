@@ -63,6 +63,7 @@ void CornerWords::put_corner(const Corner& corner, std::size_t before, std::size
   const auto fail = [&](std::string message) { corner_error(corner.offset, std::move(message)); };
   Move &a = at_.out.moves[before], &b = at_.out.moves[after];
   a.editable = b.editable = false;
+  at_.relied_ends.add(std::span(at_.out.moves).first(before));
   if ((b.kind != MoveKind::linear && b.kind != MoveKind::arc) || b.canned || b.reference || radius_.leaving() ||
       !std::ranges::all_of(at_.out.rotary, [&](const RotaryTarget& t) { return t.move < before; }))
     return fail(fmt::format(

@@ -60,6 +60,7 @@ void FrameCodes::read_frame_code(const Code& code) {
   if (t == 150 || t == 160) {
     frames_.polar = t == 160;
     if (t == 160) {
+      at_.relied_ends.add(at_.out.moves);
       const Vec3 p = programmed();
       const PlaneAxes axes = axes_of(modal_.plane());
       polar_angle_deg_ = std::atan2(p[axes.second], p[axes.first]) * 180 / kPi;
@@ -202,6 +203,7 @@ Vec3 FrameCodes::polar_target(Vec3 end) {
     end[axes.normal] = modal_.state().incremental ? end[axes.normal] + value : value;
   }
   if (!at_.words.has(radius_letter) && !at_.words.has(angle_letter)) return end;
+  if (!modal_.state().incremental && !at_.words.has(radius_letter)) at_.relied_ends.add(at_.out.moves);
   double radius = modal_.state().incremental ? 0 : std::hypot(end[axes.first], end[axes.second]);
   if (at_.words.has(radius_letter)) radius = at_.words.value(radius_letter) * modal_.unit_mm();
   if (at_.words.has(angle_letter))

@@ -34,6 +34,45 @@ ArcFrame frame_of(const Arc& arc, const Move& move) {
 
 }  // namespace
 
+void ReliedEnds::add(std::span<const Move> moves) {
+  for (std::size_t i = moves.size(); i-- > 0;) {
+    if (moves[i].kind == MoveKind::dwell) continue;
+    if (blocks_.empty() || blocks_.back() != moves[i].block) blocks_.push_back(moves[i].block);
+    return;
+  }
+}
+
+void ReliedEnds::add_direction(std::span<const Move> moves) {
+  add(moves);
+  while (!moves.empty() && moves.back().kind == MoveKind::dwell) moves = moves.first(moves.size() - 1);
+  if (!moves.empty()) add(moves.first(moves.size() - 1));
+}
+
+void ReliedEnds::fix(Interpretation& program) {
+  if (blocks_.empty()) return;
+  std::ranges::sort(blocks_);
+  auto& moves = program.moves;
+  const auto ends_as_it_starts = [](const Move& m) {
+    constexpr double kNoLengthMm = 1e-6;
+    return m.kind == MoveKind::arc && (m.end_mm - m.start_mm).norm() < kNoLengthMm;
+  };
+  std::size_t done = 0;
+  for (std::size_t behind = 1; behind <= moves.size(); ++behind) {
+    const std::uint32_t block = moves[behind - 1].block;
+    if (behind < moves.size() && moves[behind].block == block) continue;
+    if (!std::ranges::binary_search(blocks_, block)) continue;
+    const auto known = static_cast<std::ptrdiff_t>(program.fixed_ends.size());
+    for (std::size_t i = behind; i-- > done;) {
+      if (!moves[i].editable || moves[i].kind == MoveKind::dwell) continue;
+      moves[i].editable = false;
+      program.fixed_ends.push_back(static_cast<std::uint32_t>(i));
+      if (!ends_as_it_starts(moves[i])) break;
+    }
+    std::reverse(program.fixed_ends.begin() + known, program.fixed_ends.end());
+    done = behind;
+  }
+}
+
 bool only_turns(const Interpretation& program, std::size_t move) {
   constexpr double kNoLengthMm = 1e-9;
   const Move& m = program.moves[move];

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -124,6 +125,21 @@ struct Interpretation {
 
   const ModalState& state_of(const Move& m) const { return states[m.state]; }
   const Frame& frame_of(const Move& m) const { return frames[states[m.state].frame]; }
+};
+
+/// Collects the moves from whose ends others are computed, while they are read.
+class ReliedEnds {
+ public:
+  /// The end of the last motion among `moves`.
+  void add(std::span<const Move> moves);
+  /// Its direction: also where it starts.
+  void add_direction(std::span<const Move> moves);
+  /// Fills Interpretation::fixed_ends, once it is known which moves can be edited. Where such a move cannot be, or is a
+  /// full circle, the one before it decides.
+  void fix(Interpretation& program);
+
+ private:
+  std::vector<std::uint32_t> blocks_;  ///< of whose last moves the ends are relied on
 };
 
 /// True for a feed move of rotary axes alone: its F is degrees per minute, whatever unit lengths have.

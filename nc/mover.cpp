@@ -84,6 +84,7 @@ Vec3 Mover::target_at_angle(const Vec3& start, Vec3 end) {
   }
   end[open] = start[open] + (end[given] - start[given]) * along / across;
   at_.editable = false;
+  at_.relied_ends.add(at_.out.moves);
   return end;
 }
 

@@ -47,7 +47,7 @@ void Klartext::after_contour_move(std::size_t first) {
   const std::size_t before = corner.move;
   Move &a = out_.moves[before], &b = out_.moves[first];
   a.editable = b.editable = false;
-  fix_end(before);
+  relied_ends_.add(std::span(out_.moves).first(before));
   if (first != before + 1 || (b.kind != MoveKind::linear && b.kind != MoveKind::arc) || b.canned || b.reference)
     return error(
         corner.offset, "corner",
@@ -62,7 +62,6 @@ void Klartext::after_contour_move(std::size_t first) {
   Move between = *cut.between;
   if (corner.feed_mm_per_s) between.feed_mm_per_s = *corner.feed_mm_per_s;
   out_.moves.insert(out_.moves.begin() + static_cast<std::ptrdiff_t>(first), between);
-  moved_behind(first, 1);
   for (auto e = out_.events.rbegin(); e != out_.events.rend() && e->before_move >= first; ++e)
     if (e->block == b.block) ++e->before_move;
 }
@@ -128,7 +127,7 @@ void Klartext::start_approach(const Statement& s, const BlockValues& b, std::opt
   if (*form == Form::arc && a.angle_rad == 0)
     return error(s.begin, "approach", "APPR CT without the angle of its arc; CCA was expected");
   prepare_cutting("APPR", 7);
-  fix_last_end();
+  relied_ends_.add(out_.moves);
   if (b.compensation) set_compensation(*b.compensation, s.begin);
   a.side = b.compensation && *b.compensation == 2 ? -1 : 1;
   a.move = out_.moves.size();
@@ -210,7 +209,6 @@ void Klartext::finish_approach(std::size_t contour) {
   out_.moves[contour].start_mm = way.back().end_mm;
   out_.moves[contour].editable = false;
   out_.moves.insert(out_.moves.begin() + static_cast<std::ptrdiff_t>(contour), way.begin(), way.end());
-  moved_behind(contour, way.size());
   for (auto e = out_.events.rbegin(); e != out_.events.rend() && e->before_move >= contour; ++e)
     if (e->block == out_.moves[contour + way.size()].block) e->before_move += static_cast<std::uint32_t>(way.size());
 }
@@ -224,7 +222,7 @@ void Klartext::depart(const Statement& s, const BlockValues& b) {
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   const Vec3 along = last_direction(), from = programmed();
   if (along == Vec3::Zero()) return error(s.begin, "approach", "DEP without a contour before it");
-  fix_last_end();
+  relied_ends_.add_direction(out_.moves);
   editable_ = false;
   Vec3 left = Vec3::Zero();
   const double side = radius_.active ? (radius_.left ? 1 : -1) : last_compensation_ == 2 ? -1 : 1;

@@ -650,18 +650,7 @@ void Klartext::finish() {
     error(approach_.offset, "approach", "APPR is not followed by a block of the contour; L, C or CR was expected");
   for (Move& move : out_.moves)
     if (runs_[move.block] > 1) move.editable = false;
-  // Where the text does not say the last move by itself, the one before it that it does say.
-  std::size_t done = 0;
-  std::ranges::sort(anchors_);
-  for (const std::size_t behind : anchors_) {
-    for (std::size_t i = std::min(behind, out_.moves.size()); i-- > done;) {
-      if (!out_.moves[i].editable || out_.moves[i].kind == MoveKind::dwell) continue;
-      out_.moves[i].editable = false;
-      out_.fixed_ends.push_back(static_cast<std::uint32_t>(i));
-      break;
-    }
-    done = std::max(done, behind);
-  }
+  relied_ends_.fix(out_);
   out_.tool_names = tool_numbers_.names();
 }
 

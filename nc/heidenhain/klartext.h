@@ -183,9 +183,6 @@ class Klartext {
   std::uint32_t state_index();
   Vec3 programmed() const { return frame_.to_program(position_mm_); }
   Vec3 last_direction() const;
-  void fix_last_end();
-  void fix_end(std::size_t behind);
-  void moved_behind(std::size_t at, std::size_t count);
   void add_rotary(const BlockValues& b, std::size_t move);
   void turn_only(const BlockValues& b);
   void direction_target(const Vec3& direction, std::size_t move);
@@ -343,7 +340,7 @@ class Klartext {
   std::vector<CutPlane> cut_planes_;
   void note_cut_plane();
   void place_stock();
-  std::vector<std::size_t> anchors_;  ///< behind moves on whose ends others rely, ascending
+  ReliedEnds relied_ends_;
   std::optional<Vec3> blank_min_mm_;
 };
 

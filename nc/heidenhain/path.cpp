@@ -146,7 +146,7 @@ Vec3 Klartext::polar_target(const BlockValues& b) {
   const double x = now[axes.first] - pole_mm_[axes.first], y = now[axes.second] - pole_mm_[axes.second];
   double radius = std::hypot(x, y), angle = deg_from_rad(std::atan2(y, x));
   const bool from_here = !b.polar_radius || !b.polar_angle || b.polar_radius_step || b.polar_angle_step;
-  if (from_here) fix_last_end();
+  if (from_here) relied_ends_.add(out_.moves);
   if (b.polar_radius) radius = b.polar_radius_step ? radius + *b.polar_radius * unit_mm() : *b.polar_radius * unit_mm();
   if (b.polar_angle) angle = b.polar_angle_step ? angle + *b.polar_angle : *b.polar_angle;
   const Vec2 direction = direction_at_deg(angle);
@@ -172,7 +172,7 @@ void Klartext::set_centre(const BlockValues& b) {
     pole_plane_ = (given & (1U << axes_of(main_plane).normal)) == 0 ? main_plane : pole_plane_;
   if (given == 0 || !pole_given_) pole_mm_ = now;
   pole_from_here_ = given == 0 || (b.step & given) != 0;
-  if (pole_from_here_) fix_last_end();
+  if (pole_from_here_) relied_ends_.add(out_.moves);
   for (int axis = 0; axis < 3; ++axis) {
     const auto& value = b.axis[static_cast<std::size_t>(axis)];
     if (!value) continue;
@@ -452,17 +452,6 @@ Vec3 Klartext::last_direction() const {
   return Vec3::Zero();
 }
 
-/// Notes that what follows relies on the end of the last move.
-void Klartext::fix_last_end() { fix_end(out_.moves.size()); }
-
-/// The same of the move before `behind`; which one that can be is known at the end (finish).
-void Klartext::fix_end(std::size_t behind) { anchors_.push_back(behind); }
-
-/// Moves were put before `at`.
-void Klartext::moved_behind(std::size_t at, std::size_t count) {
-  for (auto a = anchors_.rbegin(); a != anchors_.rend() && *a > at; ++a) *a += count;
-}
-
 /// `arc`: programmed.
 void Klartext::arc_to(const Vec3& programmed_end, const Arc& arc, const BlockValues& b, bool by_radius) {
   std::optional<Arc> in_moves = frame_.plain ? std::optional(arc) : from_program(frame_, arc);
@@ -562,7 +551,7 @@ void Klartext::run_tangent_arc(const BlockValues& b, const Vec3& end) {
   const Vec2 chord(end[axes.first] - start[axes.first], end[axes.second] - start[axes.second]);
   const double across = d.x() * chord.y() - d.y() * chord.x();
   editable_ = false;
-  fix_last_end();  // it gives the arc its direction
+  relied_ends_.add_direction(out_.moves);
   if (std::abs(across) < 1e-9 * std::max(1.0, chord.norm())) {
     if (chord.dot(d) < 0 || chord.norm() == 0)
       return error(statement_->begin, "arc",
@@ -598,7 +587,7 @@ void Klartext::run_polar_circle(const BlockValues& b) {
   const int sense = b.sense || !b.polar_angle_step ? sense_of(b) : (*b.polar_angle < 0 ? -1 : 1);
   double sweep = 0;
   editable_ = false;
-  fix_last_end();  // it gives the radius
+  relied_ends_.add(out_.moves);  // it gives the radius
   if (b.polar_angle && b.polar_angle_step) {
     sweep = sense * rad_from_deg(std::abs(*b.polar_angle));
     const double degrees = std::fmod(std::abs(*b.polar_angle), 360.0);

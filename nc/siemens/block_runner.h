@@ -167,7 +167,6 @@ class BlockRunner : public SystemValues {
   Vec3 target();
   Vec3 target_in_program();
   Vec3 polar_target(Vec3 start);
-  void keep_last_move();
   double axis_value(const Slot& slot, double start, double unit) const;
   void note_dimensions();
   void prepare_cutting(const char* what, bool arc = false);
@@ -265,6 +264,7 @@ class BlockRunner : public SystemValues {
   bool not_editable_told_ = false;
   bool leaving_ = false;
   Vec3 beside_mm_ = Vec3::Zero();
+  ReliedEnds relied_ends_;
   Corner corner_;
 
   Vec3 rotary_rad_ = Vec3::Zero();

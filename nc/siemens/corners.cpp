@@ -75,6 +75,7 @@ void BlockRunner::put_corner(const Corner& corner, std::size_t before, std::size
   if (corner.modal && (!cuts || !same_plane || leaves(a) || leaves(b) || still(a) || still(b)))
     return;  // RNDM rounds where it can
   a.editable = b.editable = false;
+  relied_ends_.add(std::span(out_.moves).first(before));
   if (!cuts || leaving_ || !std::ranges::all_of(out_.rotary, [&](const RotaryTarget& t) { return t.move < before; }))
     return fail(fmt::format(
         "{} is not followed by a line or an arc of its kind; G1, G2 or G3 in the plane was expected", corner.text));

@@ -668,6 +668,7 @@ void BlockRunner::finish() {
   if (next_tool_ >= 0 && !tool_changed_)
     report_.warning(tool_word_offset_, "tool-not-changed",
                     "the program selects tools (T) but never changes one; M6 was expected, all moves count as tool 0");
+  relied_ends_.fix(out_);
   out_.tool_names = tools_.names();
 }
 

@@ -114,7 +114,7 @@ Vec3 BlockRunner::target_in_program() {
     if (words_.has(kAxisLetters[axis])) end[axis] = axis_value(words_.of(kAxisLetters[axis]), start[axis], unit_mm());
   if (words_.has(Extra::ang)) {
     editable_ = false;
-    keep_last_move();
+    relied_ends_.add(out_.moves);
     const PlaneAxes axes = axes_of(plane_);
     const bool first = words_.has(kAxisLetters[axes.first]), second = words_.has(kAxisLetters[axes.second]);
     const double angle = rad_from_deg(words_.of(Extra::ang).value);
@@ -134,19 +134,10 @@ Vec3 BlockRunner::target_in_program() {
   return end;
 }
 
-/// Notes that what follows is computed from the end of the last move: an edit there would move it.
-void BlockRunner::keep_last_move() {
-  for (std::size_t m = out_.moves.size(); m-- > 0;) {
-    if (out_.moves[m].kind == MoveKind::dwell) continue;
-    out_.moves[m].editable = false;
-    return;
-  }
-}
-
 /// AP=, RP= about the pole.
 Vec3 BlockRunner::polar_target(Vec3 end) {
   editable_ = false;
-  keep_last_move();
+  relied_ends_.add(out_.moves);
   const PlaneAxes axes = axes_of(plane_);
   const char normal = kAxisLetters[axes.normal];
   if (words_.has(normal)) end[axes.normal] = axis_value(words_.of(normal), end[axes.normal], unit_mm());
@@ -175,7 +166,7 @@ Vec3 BlockRunner::polar_target(Vec3 end) {
 
 /// G110: from where the tool is; G111: from the zero point; G112: from the last pole.
 void BlockRunner::set_pole() {
-  if (request_.pole == 110) keep_last_move();
+  if (request_.pole == 110) relied_ends_.add(out_.moves);
   const Vec3 from = request_.pole == 110 ? programmed() : request_.pole == 112 ? pole_mm_ : Vec3(Vec3::Zero());
   Vec3 pole = from;
   const PlaneAxes axes = axes_of(plane_);
@@ -519,7 +510,7 @@ void BlockRunner::move_on_arc() {
   }
   if (words_.has(Extra::ar)) {  // the opening angle, with the centre or with the end point
     editable_ = false;
-    keep_last_move();
+    relied_ends_.add(out_.moves);
     const Slot& ar = words_.of(Extra::ar);
     const double angle = ar.value;
     if (!(angle > 0 && angle < 360)) {
@@ -656,7 +647,7 @@ void BlockRunner::move_tangentially() {
   settle_axes_for("an arc", false);
   prepare_cutting("CT", true);
   editable_ = false;
-  keep_last_move();
+  relied_ends_.add_direction(out_.moves);
   const PlaneAxes axes = axes_of(plane_);
   const Vec3 start = programmed(), end = target_in_program(), end_mm = frame_.from_program(end);
   const auto direction = last_direction();

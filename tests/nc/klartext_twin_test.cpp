@@ -278,7 +278,6 @@ class Twins {
     straight(false);
     arc_by_radius();
     arc_by_centre(0);
-    straight(false);
     helix();
     steps();
     polar();
