@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -16,6 +17,15 @@ int interval_count(std::span<const Mode> modes, const Cut& cut, double period_s,
   for (const CutSlice& s : cut.slices) arc = std::min(arc, std::max(s.exit_rad - s.entry_rad, 0.01));
   return static_cast<int>(std::ceil(std::max(
       {kLeast * period_rad / cut.pitch_rad.front(), per_period * highest * period_s, kPerArc * period_rad / arc})));
+}
+
+/// By which the ends of a slice come later than the tip, rad.
+std::pair<double, double> lags_of(const Cut& cut, const CutSlice& s, double depth) {
+  return {cut.lag_rad_per_mm * s.from * depth, cut.lag_rad_per_mm * s.to * depth};
+}
+bool lags_alike(double low, double high) {
+  constexpr double kNoLag_rad = 1e-6;
+  return std::abs(high - low) < kNoLag_rad;
 }
 
 }  // namespace
@@ -64,22 +74,31 @@ PeriodMap::ModeStep PeriodMap::step_of(const Mode& mode) const {
   return {mode.direction, e, constant - ramp, ramp};
 }
 
+/// Of a tooth whose tip is at an angle; without a lag over the slice both ends are alike, and integrated once.
+void PeriodMap::integrate_to(double angle, double depth, std::vector<SliceIntegrals>& out) const {
+  out.resize(integrals_.size());
+  for (std::size_t i = 0; i < integrals_.size(); ++i) {
+    const auto [low, high] = lags_of(cut_, cut_.slices[i], depth);
+    const DirectionalIntegral& w = integrals_[i];
+    if (lags_alike(low, high))
+      out[i].low = w.first(angle - (low + high) / 2);
+    else
+      out[i] = {w.second(angle - low), w.second(angle - high)};
+  }
+}
+
 /// Mean of the chip's matrix of one tooth whose tip turns from one angle to another, N/mm; all slices.
-Eigen::Matrix2d PeriodMap::tooth_mean(double from, double to, double depth) const {
-  constexpr double kNoLag_rad = 1e-6;
+Eigen::Matrix2d PeriodMap::tooth_mean(const std::vector<SliceIntegrals>& from, const std::vector<SliceIntegrals>& to,
+                                      double turn, double depth) const {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (std::size_t i = 0; i < integrals_.size(); ++i) {
     const CutSlice& s = cut_.slices[i];
-    const double low = cut_.lag_rad_per_mm * s.from * depth, high = cut_.lag_rad_per_mm * s.to * depth;
-    const double height = (s.to - s.from) * depth / (to - from);
-    const DirectionalIntegral& w = integrals_[i];
-    if (std::abs(high - low) < kNoLag_rad) {
-      const double lag = (low + high) / 2;
-      sum += height * (w.first(to - lag) - w.first(from - lag));
-    } else {
-      sum += height / (high - low) *
-             (w.second(to - low) - w.second(from - low) - w.second(to - high) + w.second(from - high));
-    }
+    const auto [low, high] = lags_of(cut_, s, depth);
+    const double height = (s.to - s.from) * depth / turn;
+    if (lags_alike(low, high))
+      sum += height * (to[i].low - from[i].low);
+    else
+      sum += height / (high - low) * (to[i].low - from[i].low - to[i].high + from[i].high);
   }
   return sum;
 }
@@ -97,10 +116,16 @@ void PeriodMap::set_depth(double depth) {
   for (Delay& d : delays_) d.chip.assign(static_cast<std::size_t>(intervals_), Eigen::Matrix2d::Zero());
   // Tooth j is preceded by the pitch from tooth j - 1; with M3 a tooth behind stands at a smaller angle.
   double behind = 0;
+  std::vector<SliceIntegrals> from, to;
   for (std::size_t j = 0; j < cut_.pitch_rad.size(); ++j) {
     Delay& d = delays_[equal_ ? 0 : j];
-    for (int i = 0; i < intervals_; ++i)
-      d.chip[static_cast<std::size_t>(i)] += tooth_mean(i * turn - behind, (i + 1) * turn - behind, depth);
+    integrate_to(0 * turn - behind, depth, from);
+    for (int i = 0; i < intervals_; ++i) {
+      integrate_to((i + 1) * turn - behind, depth, to);
+      d.chip[static_cast<std::size_t>(i)] +=
+          tooth_mean(from, to, ((i + 1) * turn - behind) - (i * turn - behind), depth);
+      std::swap(from, to);
+    }
     behind += cut_.pitch_rad[(j + 1) % cut_.pitch_rad.size()];
   }
   interval_.resize(static_cast<std::size_t>(intervals_));

@@ -6,6 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "base/cancel.h"
+
 namespace camber::dynamics {
 namespace {
 
@@ -83,6 +85,7 @@ class DepthScan {
       : map_(modes, cut, speed_rpm, o.points_per_period, o.min_intervals) {}
 
   Multiplier at(double depth) {
+    cancellation_point();
     map_.set_depth(depth);
     return largest_.of(map_);
   }

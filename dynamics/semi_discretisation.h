@@ -84,7 +84,13 @@ class PeriodMap {
 
   ModeStep step_of(const Mode& mode) const;
   Vec2 delayed(std::size_t knot_from_start, double delay) const;
-  Eigen::Matrix2d tooth_mean(double angle_from, double angle_to, double depth_mm) const;
+  /// Integrals of the chip's matrix of one slice, up to the angle of its lower and of its upper end.
+  struct SliceIntegrals {
+    Eigen::Matrix2d low, high;
+  };
+  void integrate_to(double angle_rad, double depth_mm, std::vector<SliceIntegrals>& out) const;
+  Eigen::Matrix2d tooth_mean(const std::vector<SliceIntegrals>& from, const std::vector<SliceIntegrals>& to,
+                             double turn_rad, double depth_mm) const;
   void keep_history_that_counts();
 
   std::vector<Mode> modes_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "base/cancel.h"
 #include "dynamics/semi_discretisation.h"
 
 namespace camber::dynamics {
@@ -123,6 +124,7 @@ std::vector<CriticalDepth> StabilityTable::at_speeds(const ArcCut& c, const std:
   const ZeroOrderLobes lobes(modes_, cut);
   std::vector<CriticalDepth> out;
   for (const double rpm : speeds_rpm) {
+    cancellation_point();
     const bool low_lobes = highest_hz_ * period_s_ * speed_rpm_ / rpm <= kLowLobes;
     const bool semi = low_lobes && c.arc_rad >= kShortestArc_rad && short_or_unequal(c);
     out.push_back(semi ? semi_border(modes_, cut, rpm).critical : lobes.at(rpm));
@@ -163,6 +165,7 @@ std::vector<double> StabilityTable::drawn_depths(const ArcCut& c) const {
   Cut cut = cut_with(c);
   std::vector<double> depths;
   for (int i = 0; i < kDraws; ++i) {
+    cancellation_point();
     // A tool that is alike in x and y stays so: its modes come in pairs.
     const double f = std::exp(errors_.frequency * normal(random)), z = std::exp(errors_.damping * normal(random)),
                  k = std::exp(errors_.stiffness * normal(random));

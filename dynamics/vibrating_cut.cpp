@@ -24,6 +24,10 @@ CutSlice shoulder(double radial_fraction, Milling milling, double kt, double kr)
 
 DirectionalIntegral::DirectionalIntegral(const CutSlice& s)
     : entry_(s.entry_rad), arc_(s.exit_rad - s.entry_rad), kt_(s.kt_MPa), kr_(s.kr_MPa) {
+  primitive_at_entry_ = primitive(entry_);
+  second_primitive_at_entry_ = second_primitive(entry_);
+  arc_first_ = primitive(entry_ + arc_) - primitive_at_entry_;
+  arc_second_ = second_primitive(entry_ + arc_) - second_primitive_at_entry_ - arc_ * primitive_at_entry_;
   turn_first_ = first_in_turn(2 * kPi);
   turn_second_ = second_in_turn(2 * kPi);
 }
@@ -42,14 +46,12 @@ Eigen::Matrix2d DirectionalIntegral::second_primitive(double phi) const {
 
 /// r: angle beyond the entry, 0 to 2 pi.
 Eigen::Matrix2d DirectionalIntegral::first_in_turn(double r) const {
-  return primitive(entry_ + std::min(r, arc_)) - primitive(entry_);
+  return r < arc_ ? Eigen::Matrix2d(primitive(entry_ + r) - primitive_at_entry_) : arc_first_;
 }
 
 Eigen::Matrix2d DirectionalIntegral::second_in_turn(double r) const {
-  const double in = std::min(r, arc_);
-  const Eigen::Matrix2d inside = second_primitive(entry_ + in) - second_primitive(entry_) - in * primitive(entry_);
-  if (r <= arc_) return inside;
-  return inside + (r - arc_) * first_in_turn(arc_);
+  if (r > arc_) return arc_second_ + (r - arc_) * arc_first_;
+  return second_primitive(entry_ + r) - second_primitive_at_entry_ - r * primitive_at_entry_;
 }
 
 Eigen::Matrix2d DirectionalIntegral::first(double phi) const {

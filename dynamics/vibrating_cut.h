@@ -58,7 +58,9 @@ class DirectionalIntegral {
   Eigen::Matrix2d primitive(double phi) const, second_primitive(double phi) const;
   Eigen::Matrix2d first_in_turn(double r) const, second_in_turn(double r) const;
   double entry_, arc_, kt_, kr_;
-  Eigen::Matrix2d turn_first_, turn_second_;
+  Eigen::Matrix2d primitive_at_entry_, second_primitive_at_entry_;
+  Eigen::Matrix2d arc_first_, arc_second_;    ///< at the exit
+  Eigen::Matrix2d turn_first_, turn_second_;  ///< behind a turn
 };
 
 /// Mean of W over a turn and the depth, of one tooth.

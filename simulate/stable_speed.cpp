@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/cancel.h"
 #include "dynamics/tool_modes.h"
 #include "simulate/passage_cut.h"
 
@@ -96,6 +97,7 @@ class SpeedSearch {
     constexpr std::size_t kExact = 4;
     std::vector<MarginOfCut> all;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
+      cancellation_point();
       const PassageCut& p = cuts_[i].passage;
       all.emplace_back(p.depth_mm / table(rpm, cuts_[i].upright).zero_order_at(p.cut).depth_mm, i);
     }
