@@ -82,6 +82,7 @@ void assume_spindle(const machine::Job& job, const nc::Program& program, nc::Int
   if (starts_spindle(moves)) return;
   const auto cuts = [](const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; };
   if (std::ranges::any_of(moves.states, [](const nc::ModalState& s) { return s.spindle_speed_rpm > 0; })) {
+    if (!machine_may_start_spindle(moves)) return;
     const auto first = std::ranges::find_if(
         moves.moves, [&](const nc::Move& m) { return cuts(m) && moves.state_of(m).spindle_speed_rpm > 0; });
     for (nc::ModalState& s : moves.states)

@@ -18,9 +18,10 @@ void check_cutting(const machine::Job& job, const nc::Program& program, const nc
                    const std::vector<bool>& selected, const std::vector<removal::HoleMove>& holes,
                    Diagnostics& diagnostics);
 
-/// A program with S and neither M3 nor M4: the spindle turns clockwise, with a warning [spindle-assumed]. One without S
-/// as well, as for machines whose spindle is set by hand: each tool gets the speed at which its greatest feed cuts
-/// chips of 0.6 % of its diameter (0.02 to 0.1 mm) a tooth, 1000 to 12000 rpm, likewise.
+/// A program with S and an M function of the machine's maker, but neither M3 nor M4: the spindle turns clockwise, with
+/// a warning [spindle-assumed]. One without S as well, as for machines whose spindle is set by hand: each tool gets the
+/// speed at which its greatest feed cuts chips of 0.6 % of its diameter (0.02 to 0.1 mm) a tooth, 1000 to 12000 rpm,
+/// likewise.
 void assume_spindle(const machine::Job& job, const nc::Program& program, nc::Interpretation& moves,
                     Diagnostics& diagnostics);
 

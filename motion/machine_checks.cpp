@@ -152,6 +152,15 @@ bool starts_spindle(const nc::Interpretation& moves) {
   });
 }
 
+bool machine_may_start_spindle(const nc::Interpretation& moves) {
+  // Those that controls have in common: stops, tools, coolant, clamps, gears, overrides, pallets, subprograms.
+  constexpr std::array kCommon{0,  1,  2,  6,  7,  8,  9,  10, 11, 17, 19, 30, 40, 41, 42, 43, 44,
+                               45, 48, 49, 50, 51, 60, 70, 88, 89, 91, 92, 94, 96, 97, 98, 99};
+  return !starts_spindle(moves) && std::ranges::any_of(moves.events, [&](const nc::Event& e) {
+    return e.kind == nc::EventKind::m_code && std::ranges::find(kCommon, static_cast<int>(e.value)) == kCommon.end();
+  });
+}
+
 void check_machine(const machine::Machine& machine, const nc::Program& program, const nc::Interpretation& moves,
                    Diagnostics& diagnostics) {
   MachineCheck(machine, program, moves, diagnostics).run();
@@ -198,7 +207,7 @@ void check_spindle(const nc::Program& program, const nc::Interpretation& moves, 
       return say(m, Severity::warning,
                  "the program never starts a spindle; S above zero and M3 were expected, unless it runs in air",
                  "spindle-stopped");
-    if (s.spindle_speed_rpm > 0 && !starts_spindle(moves))
+    if (s.spindle_speed_rpm > 0 && machine_may_start_spindle(moves))
       return say(m, Severity::warning, kSpindleAssumed, "spindle-assumed");
     if (s.spindle == nc::SpindleDirection::stopped || s.spindle_speed_rpm <= 0)
       say(m, Severity::error,

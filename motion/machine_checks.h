@@ -22,12 +22,13 @@ void check_feeds(const nc::Program& program, const nc::Interpretation& moves, Di
 /// A line straight up: the tool leaves what it has cut, as it may with the spindle stopped.
 bool withdraws(const nc::Interpretation& moves, const nc::Move& move);
 
-/// M3 or M4 stands in the program. Where neither does, a subprogram or another M function of the machine starts the
-/// spindle.
+/// M3 or M4 stands in the program.
 bool starts_spindle(const nc::Interpretation& moves);
+/// Neither does, but an M function that only the machine's maker knows: it may start the spindle.
+bool machine_may_start_spindle(const nc::Interpretation& moves);
 inline constexpr const char* kSpindleAssumed =  ///< [spindle-assumed]
-    "the program has S, but neither M3 nor M4; a spindle that a subprogram or another M function of the machine starts "
-    "clockwise is assumed";
+    "the program has S, but neither M3 nor M4; it is assumed that an M function of the machine's maker starts the "
+    "spindle clockwise";
 
 /// For a program without a job, where every line and arc but those straight up counts as a cut: errors
 /// [spindle-stopped] and [spindle-direction] (cutters are right-hand; tapping aside), warning [spindle-assumed]. A

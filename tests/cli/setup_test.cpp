@@ -140,6 +140,22 @@ TEST(SetUp, MissingSpindleSpeed) {
                             "[spindle-stopped]\n    G1 X12 F900\n    ^\n");
 }
 
+TEST(SetUp, MissingStartOfTheSpindle) {
+  expect_refused_by_machine({.program = replaced(kSlot, "S3000 M3", "S3000")},
+                            "p.nc:6:1: error: T1 cuts here with the spindle stopped; S above zero and M3 were expected "
+                            "[spindle-stopped]\n    G1 X12 F900\n    ^\n");
+}
+
+TEST(SetUp, AnMFunctionOfTheMachineMayStartTheSpindle) {
+  const TempFolder folder;
+  write(folder, {.program = replaced(kSlot, "S3000 M3", "S3000 M203")});
+  for (const char* command : {"check p.nc --machine machine.toml", "check --job job.toml"}) {
+    const CamberRun run = run_camber(folder, command);
+    EXPECT_EQ(run.status, 0) << command << run.err;
+    EXPECT_NE(run.err.find("[spindle-assumed]"), std::string::npos) << command << run.err;
+  }
+}
+
 TEST(SetUp, AToolMayLeaveTheCutWithTheSpindleStopped) {
   const TempFolder folder;
   write(folder, {.program = replaced(kSlot, "G0 Z5\nM30", "M5\nG1 Z5 F2000\nM30")});
