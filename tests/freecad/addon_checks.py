@@ -51,7 +51,7 @@ def without_times(figures):
 class AddOn(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.job = path_job.make(apart_mm=8)
+        cls.job = path_job.make(apart_mm=8, rpm=2000)
         cls.folder = tempfile.mkdtemp()
         settings.prepare(cls.job)
 
@@ -60,7 +60,7 @@ class AddOn(unittest.TestCase):
         self.job.CamberMaterial = "C45"
         self.job.CamberVoxel = 0.8
         self.job.CamberForceLimit = 0
-        self.job.CamberTolerance = 20
+        self.job.CamberTolerance, self.job.CamberGoal = 20, "tolerance"
         self.job.PostProcessor, self.job.PostProcessorArgs = "linuxcnc", "--no-show-editor"
         for controller in self.job.Tools.Group:
             controller.CamberOverhang = 12 if controller.ToolNumber == 1 else 20

@@ -37,7 +37,7 @@ def raster(apart_mm):
     return lines + ["G0 Z5"]
 
 
-def make(name="Part", apart_mm=1.0):
+def make(name="Part", apart_mm=1.0, rpm=6000):
     doc = FreeCAD.newDocument(name)
     block = Part.makeBox(24, 18, 6, FreeCAD.Vector(0, 0, -6)).cut(
         Part.makeBox(12, 9, 2, FreeCAD.Vector(6, 4.5, -2)))
@@ -45,7 +45,7 @@ def make(name="Part", apart_mm=1.0):
     model.Shape = block
     job = PathJob.Create("Job", [model], None)
     doc.recompute()
-    mill = controller(job, 1, "5mm_Endmill.fctb", 480, 6000)
+    mill = controller(job, 1, "5mm_Endmill.fctb", 480, rpm)
     # While there is one tool controller: with two, FreeCAD asks on the screen which an operation takes.
     top = PathCustom.Create("Surface")
     top.Gcode = raster(apart_mm)
@@ -54,7 +54,7 @@ def make(name="Part", apart_mm=1.0):
     pocket = PathPocket.Create("Pocket")
     pocket.Base = [(solid, ["Face%d" % (floor + 1)])]
     profile = PathProfile.Create("Profile")
-    top.ToolController = controller(job, 2, "6mm_Ball_End.fctb", 480, 6000)
+    top.ToolController = controller(job, 2, "6mm_Ball_End.fctb", 480, rpm)
     for operation in (pocket, profile):
         operation.ToolController = mill
     doc.recompute()

@@ -107,7 +107,7 @@ def _simulation(job, box):
 
 
 def _compensation(job):
-    out = "\n[compensation]\ntolerance_um = %.6f\n" % job.CamberTolerance
+    out = "\n[compensation]\ntolerance_um = %.6f\ngoal = %s\n" % (job.CamberTolerance, _quoted(job.CamberGoal))
     if job.CamberWorkOffset.strip():
         try:
             numbers = [float(word) for word in job.CamberWorkOffset.replace(",", " ").split()]

@@ -22,6 +22,8 @@ def parser():
     out.add_argument("--machine", help="machine file of Camber")
     out.add_argument("--material", help="name of a material preset, or a file with a [material] table")
     out.add_argument("--tolerance-um", type=float, help="tolerance of the surface")
+    out.add_argument("--goal", choices=("best", "tolerance"),
+                     help="tolerance: stop where it is reached, which is sooner")
     out.add_argument("--voxel-mm", type=float, help="width of the voxels")
     out.add_argument("--force-limit-N", type=float, help="of adapt")
     out.add_argument("--power-limit-W", type=float, help="of adapt")
@@ -48,7 +50,8 @@ def _take(options, job):
     """Settings given as arguments count before those of the document, and are stored there."""
     settings.prepare(job)
     for name, value in (("CamberMachine", options.machine), ("CamberMaterial", options.material),
-                        ("CamberTolerance", options.tolerance_um), ("CamberVoxel", options.voxel_mm),
+                        ("CamberTolerance", options.tolerance_um), ("CamberGoal", options.goal),
+                        ("CamberVoxel", options.voxel_mm),
                         ("CamberForceLimit", options.force_limit_N), ("CamberPowerLimit", options.power_limit_W)):
         if value is not None:
             setattr(job, name, value)

@@ -10,6 +10,8 @@ JOB_PROPERTIES = [
     ("CamberMaterial", "App::PropertyString", "", "Material: the name of a preset, or a file with a [material] table"),
     ("CamberVoxel", "App::PropertyLength", 0.0, "Width of the voxels; 0: chosen by the size of the stock"),
     ("CamberTolerance", "App::PropertyFloat", 5.0, "Tolerance of the surface in micrometres"),
+    ("CamberGoal", "App::PropertyEnumeration", ["best", "tolerance"],
+     "Compensate until no round helps any more (best), or until the tolerance is reached: sooner"),
     ("CamberForceLimit", "App::PropertyFloat", 0.0, "Adapt feeds: largest force across the tool in N; 0: not limited"),
     ("CamberPowerLimit", "App::PropertyFloat", 0.0, "Adapt feeds: largest power of the cut in W; 0: not limited"),
     ("CamberWorkOffset", "App::PropertyString", "",
