@@ -16,7 +16,7 @@ struct TriedLaw {
   double held_out_percent = 0;  ///< mean error of the times of the parts held out
 };
 
-/// Of x, y, z in mm/s^2, and of a, b, c in degrees/s^2; 0: the axis rests.
+/// Accelerations of x, y, z in mm/s^2 and of a, b, c in degrees/s^2; 0: the axis rests.
 using Accelerations = std::array<double, 6>;
 
 /// What the commands of the traces show (traced_acceleration.h).

@@ -222,7 +222,7 @@ constexpr std::size_t kFewHeld = 20;
 constexpr double kHeldBand = 5e-4;      // samples of one ramp differ by less than this share: rounding of the trace
 constexpr double kBelowOwnTop = 0.995;  // of an axis that does not limit
 
-/// Of one axis, over windows of ten periods (a trace is rounded). 0: the axis rests.
+/// Returns the acceleration of one axis, over windows of ten periods (a trace is rounded). 0: the axis rests.
 double traced_acceleration(const std::vector<const ServoTrace*>& traces, int axis) {
   constexpr std::size_t kWindow = 10, kLeftOut = 20;
   std::vector<double> highest;  // a heap, least in front

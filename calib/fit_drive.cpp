@@ -343,7 +343,7 @@ std::size_t judged_samples(const std::vector<Slice>& slices, bool held_out) {
   return n;
 }
 
-/// Of the axis at every fitted sample, by the model, in the unit of the residuals per second.
+/// Returns the model's speed of the axis at every fitted sample, in the unit of the residuals per second.
 std::vector<double> modelled_speeds(const Candidate& c, const std::vector<Slice>& slices) {
   std::vector<double> speeds;
   for (const Slice& s : slices) {

@@ -24,7 +24,7 @@ struct CutResidual {
   std::array<bool, 3> has{};
 };
 
-/// Of one log.
+/// The run-out that one log shows.
 struct RunOutFit {
   std::string log;
   double offset_mm = 0, angle_rad = 0;  ///< from tooth 1's edge at the tip; tooth 1 is the longest one

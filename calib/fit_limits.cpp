@@ -60,7 +60,7 @@ LimitParameter rotary_acceleration(const char* name) {
           .fitted = {}};
 }
 
-/// Of the axes of the chain.
+/// Adds the accelerations of the chain's axes.
 void add_rotary_accelerations(const Machine& machine, std::vector<LimitParameter>& p) {
   const std::string axes = machine.kinematics.rotary_axes();
   if (axes.find('a') != axes.npos) p.push_back(rotary_acceleration<0>("axis.a.acceleration_deg_per_s2"));

@@ -19,10 +19,10 @@ struct TimedLines {
   std::vector<double> time_s;   ///< of each part; 0: not in the trace
   std::vector<char> kept_back;  ///< of each part
   std::vector<int> group;       ///< of each part: what lies within one part of the program errs together
-  /// Of each part: what its time is known to. Empty: a servo trace's, about a period. The times of a log, which gives
-  /// it, end when the rapid behind the part begins, so that they hold the wait before it.
+  /// Standard error of each part's time. Empty: that of a servo trace, about a period. A log gives it; its times end
+  /// when the rapid behind the part begins, so that they hold the wait before it.
   std::vector<double> sigma_s{};
-  /// Of each logged part: its moves [first, end), of which a program of stretches may have the lines elsewhere again.
+  /// The moves [first, end) of each logged part; a program of stretches may have their lines elsewhere again.
   std::vector<std::pair<std::size_t, std::size_t>> moves{};
   std::vector<char> ends_in_motion{};  ///< of each logged part: no wait at its end
   double step_s = 0;                   ///< between the samples of a servo trace

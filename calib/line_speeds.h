@@ -54,8 +54,8 @@ struct LoggedLines {
   TimedLines lines;
 };
 
-/// Of every `keep_back_every`-th stretch the time is held out. `count`: of the parts before, which goes on, so that no
-/// two parts are of one group.
+/// Holds out the time of every `keep_back_every`-th stretch. `count`: the number of parts before, which goes on, so
+/// that no two parts are of one group.
 std::vector<LoggedLines> logged_lines(const std::vector<StretchRun>& runs, int keep_back_every, std::size_t& count);
 
 struct LineFeed {
@@ -69,17 +69,17 @@ struct LineFeed {
   Vec3 asked_deg_per_s = Vec3::Zero();  ///< of a, b, c; infinite for those that turn in a rapid
 };
 
-/// Of the last move of each line, by its 1-based number. Requires kinematics::has_rotary_motion.
+/// Returns the feed of the last move of each line, by its 1-based number. Requires kinematics::has_rotary_motion.
 std::vector<LineFeed> feeds_of_lines(const nc::Interpretation& program, const machine::Machine& machine);
 
-/// Of one joint, mm/s or degrees/s.
+/// The top speed of one joint, mm/s or degrees/s.
 struct TopSpeed {
   std::optional<FittedValue> limit;  ///< the axis was at its limit
   int moves = 0;                     ///< that show it
   double highest = 0;                ///< speed that some move holds: the limit is no lower
 };
 
-/// Of x, y, z, a, b, c.
+/// Returns the top speeds of x, y, z, a, b, c.
 ///
 /// The axes share one path, so that an axis is known to be at its limit only in a move that asks it for more,
 /// where it turns as fast as it ever does, and where every other axis stays below a speed that it holds elsewhere. In a

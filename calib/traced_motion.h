@@ -13,8 +13,8 @@
 namespace camber::calib {
 
 struct TracedMotion {
-  /// As predict_feed gives them: position_mm where the axes were, command_mm what the control commanded (without these
-  /// columns the same), `move` the move being commanded.
+  /// Samples like those of predict_feed: position_mm is where the axes were, command_mm what the control commanded
+  /// (without these columns the same), `move` the move being commanded.
   std::vector<feedmodel::TimedSample> samples;
   bool by_line = false;        ///< matched by the line column; else by place
   double period_s = 0;         ///< median

@@ -6,7 +6,7 @@
 namespace camber::repath {
 namespace {
 
-/// Of a room, at either side: what rounding of the centre may need.
+/// The fraction of a room that rounding of the centre may need at either side.
 constexpr double kMargin = 0.06;
 
 }  // namespace

@@ -187,7 +187,7 @@ class Compressor {
     return {kNoRewrite, 0, runs.path.block[next]};
   }
 
-  /// Of the new text.
+  /// Returns the kink's block in the new text.
   std::uint32_t block_of(const KinkPlace& place) const {
     if (place.rewrite != kNoRewrite)
       return out_.runs[place.rewrite].first_block_after + static_cast<std::uint32_t>(place.line);

@@ -12,7 +12,7 @@ constexpr double kSameDistanceMm = 1e-9;
 
 bool cuts(const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; }
 
-/// Of each move the number of its chain, counted from 1: chains are cutting moves that follow each other. 0: cuts not.
+/// Returns the number of each move's chain, from 1 on: chains are cutting moves that follow each other. 0: no cut.
 std::vector<std::uint32_t> chains_of(const nc::Interpretation& program) {
   std::vector<std::uint32_t> out(program.moves.size(), 0);
   std::uint32_t chain = 0;

@@ -157,7 +157,7 @@ class Search {
     return std::clamp(kPredictedBlocks / std::max(1.0, predicted_blocks_), kFewestTrials, kMaxTrials);
   }
 
-  /// As many trials as there may be.
+  /// Returns the largest number of trials that there may be.
   double max_trials() const {
     if (last_trial_ > 0) return static_cast<double>(last_trial_);
     return trials_of_feeds() + (options_.layout.length_mm > 0 ? 1.0 : static_cast<double>(std::size(kLengths)));

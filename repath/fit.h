@@ -107,9 +107,9 @@ inline std::vector<Primitive> fit(std::span<const Vec2> points, const FitOptions
   return fit(Polyline{points}, options);
 }
 
-/// As fit(), with every pair of points tried: the fewest primitives that this geometry allows, and among chains of as
-/// many the one with the shortest lines. Kinks are not bounded. For tests: the time grows with the cube of the number
-/// of points.
+/// Fits as fit() does, but tries every pair of points: the fewest primitives that this geometry allows, and among
+/// chains of as many the one with the shortest lines. Kinks are not bounded. For tests: the time grows with the cube of
+/// the number of points.
 std::vector<Primitive> fit_exhaustively(const Polyline& path, const FitOptions& options);
 inline std::vector<Primitive> fit_exhaustively(std::span<const Vec2> points, const FitOptions& options) {
   return fit_exhaustively(Polyline{points}, options);
@@ -167,7 +167,7 @@ class FitMemory {
 /// Tries one line, one arc.
 class Fitter {
  public:
-  /// As line(), arc_room(), arc(). Kept for a while: asked again it costs nothing. Valid until the next call.
+  /// Returns the results of line(), arc_room() and arc(), which are kept for a while. Valid until the next call.
   const TriedPrimitives& tried(std::uint32_t first, std::uint32_t last) const;
 
   Fitter(const Polyline& path, const FitOptions& options, FitMemory* memory = nullptr);
@@ -178,7 +178,7 @@ class Fitter {
   std::vector<std::uint32_t> line_ends(std::uint32_t first, std::uint32_t end, std::uint32_t max_ends) const;
 
   std::optional<ArcRoom> room(std::uint32_t first, std::uint32_t last) const;
-  /// As room(), and nothing where the stretch has too few points or is not flat.
+  /// Returns what room() does; nothing where the stretch has too few points or is not flat.
   std::optional<ArcRoom> arc_room(std::uint32_t first, std::uint32_t last) const;
   /// The first that holds of the best sweep and others in the room.
   std::optional<Primitive> arc_in(std::uint32_t first, std::uint32_t last, const ArcRoom& room) const;

@@ -16,7 +16,7 @@ constexpr double kRoundingRad = 1e-9;
 /// An edge below the angle of corners: the rule of resegment for what it keeps.
 constexpr double kEdgeRad = 5 * kPi / 180;
 constexpr double kEdgeTimesBeside = 3;
-/// Of what the program turns at a point: how well its chords say the direction there.
+/// The fraction of what the program turns at a point to which its chords tell the direction there.
 constexpr double kFractionOfArcs = 0.125, kFractionOfLines = 0.6;
 constexpr double kTimesOfBlocks = 2;
 constexpr double kAlwaysSharpRad = 60 * kPi / 180;  ///< also where the path turns as much beside it; as in resegment

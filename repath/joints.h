@@ -30,18 +30,18 @@ class PieceJoints {
   /// blocks of the path as they were may always follow each other.
   double max_kink_rad(const Primitive& before, const Primitive& p) const;
 
-  /// Of a kink between arcs the fraction that behind() gives away; rounding of centres takes from the rest.
+  /// Sets the fraction of a kink between arcs that behind() gives away; rounding of centres takes from the rest.
   void give_away(double fraction) { fraction_tried_ = fraction; }
 
-  /// Of the sweeps of `p` those that some sweep of the primitive before can be joined to; nothing where there is none.
-  /// In space what the slopes leave of the kink is left to the directions from above.
+  /// Returns those sweeps of `p` that some sweep of the primitive before can be joined to; nothing where there is none.
+  /// In space the directions from above get what the slopes leave of the kink.
   std::optional<Sweeps> behind(const Primitive& before, const Sweeps& of_before, const Primitive& p,
                                const Sweeps& of_p) const;
 
   /// The sweep among `of_p` that kinks least against the begin of the primitive behind, as that one is.
   double sweep_towards(const Primitive& p, const Sweeps& of_p, const Primitive& behind) const;
 
-  /// As the function of that name. Kept for a while: searches ask again and again for the same.
+  /// Returns what the free function of that name does, and keeps it for a while: searches ask for the same again.
   double chord_angle_rad(const Primitive& p) const;
 
   /// Whether two primitives as they are kink no more than they may.

@@ -14,7 +14,7 @@ struct Range {
   std::size_t first = 0, last = 0;
 };
 
-/// Of each run the moves that its blocks make; `first`, `last`: which blocks those are.
+/// Returns the moves that the blocks of each run make; `first`, `last`: which blocks those are.
 std::vector<Range> ranges_of(const nc::Interpretation& program, std::span<const RewrittenRun> runs,
                              std::uint32_t RewrittenRun::*first, std::uint32_t RewrittenRun::*last) {
   std::vector<Range> out(runs.size());

@@ -47,7 +47,7 @@ std::optional<int> modal_key(const nc::Word& w) {
   }
 }
 
-/// Of these, the ones that may change in the first block of a run.
+/// Returns whether the word is one of these that may change in the first block of a run.
 bool may_lead(const nc::Word& w) {
   if (w.letter == 'S') return true;
   if (w.letter == 'M') return w.value != 5 && w.value != 9;  // these act at the end of their block

@@ -39,7 +39,7 @@ class PlainBlocks {
   /// `arcs`: G2, G3 and their words are plain too.
   PlainBlocks(const nc::Program& program, bool arcs);
 
-  /// As a block of a run: `first`, its words may change what the block before it left in force.
+  /// Returns what keeps a block out of a run; as the `first` one its words may change what is in force.
   Apart apart(std::size_t block, bool first) const {
     return first ? static_cast<Apart>(blocks_[block] >> 8) : static_cast<Apart>(blocks_[block] & 0xff);
   }

@@ -62,7 +62,7 @@ double Divider::farthest(const TipMotion& motion, const RotaryChoice& choice, do
   return good == from ? to : good;
 }
 
-/// As few as there can be, each as long as it can be.
+/// Returns as few cuts as the tolerance allows, each piece as long as it can be.
 std::vector<double> Divider::cuts_within(const TipMotion& motion, const RotaryChoice& choice, double from, double to,
                                          double tolerance_mm) const {
   std::vector<double> out;
@@ -70,7 +70,7 @@ std::vector<double> Divider::cuts_within(const TipMotion& motion, const RotaryCh
   return out;
 }
 
-/// As many with the least tolerance that gives no more of them: no short last one.
+/// Returns as many cuts, by the least tolerance that needs no more of them, so that no piece is short.
 std::vector<double> Divider::even_cuts(const TipMotion& motion, const RotaryChoice& choice, double from, double to,
                                        double tolerance_mm) const {
   constexpr int kTrials = 7;

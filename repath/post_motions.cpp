@@ -99,7 +99,7 @@ class Collector {
     return x.tool == y.tool && x.tool_length_mm == y.tool_length_mm;
   }
 
-  /// Of consecutive candidates with one tool only those from the first to the last with turned axes.
+  /// Keeps, of consecutive candidates with one tool, those from the first to the last with turned axes.
   void drop_upright_ends() {
     std::vector<bool> turned(moves_.moves.size(), false);
     kinematics::ProgramJoints joints(free_machine_, moves_);

@@ -36,7 +36,7 @@ struct PoleTwist {
   double cosine = 0;                         ///< of beta
 
   double past_pole_rad(const Vec3& programmed_rad) const;
-  /// Of the first axis; continuous.
+  /// Returns the angle of the first axis; it is continuous.
   double of(const Vec3& programmed_rad) const;
   /// Bound of the angle between the tool where this turns as it must, and where the axes turn evenly between two
   /// places: max|of''| / 8 of the first axis, times the sine of the angle between it and the tool.
@@ -52,7 +52,7 @@ struct RotaryChoice {
 
   Vec3 of(const Vec3& programmed_rad) const;
   bool as_programmed() const { return !mirrored && offset_rad.isZero(0); }
-  /// Of the tool, where the axes turn evenly between two programmed places; 0 without a twist.
+  /// Returns how far the tool deviates where the axes turn evenly between two programmed places; 0 without a twist.
   double deviation_rad(const Vec3& from_rad, const Vec3& to_rad) const {
     return twist ? twist->deviation_rad(from_rad, to_rad) : 0;
   }

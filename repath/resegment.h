@@ -62,8 +62,8 @@ struct Layout {
   std::vector<SegmentPlace> place;  ///< of the segment that ends at each point; empty: not asked for
 };
 
-/// Of a run's segments: options.length_mm, or length_factor times L_b at the run's feed, or where the control has no
-/// block time times the mean length of its blocks.
+/// Returns the length of a run's segments: options.length_mm, or length_factor times L_b at the run's feed, or where
+/// the control has no block time, length_factor times the mean length of its blocks.
 double length_for(const nc::Interpretation& moves, const BlockRun& run, const ResegmentOptions& options);
 
 /// Between corners a smooth curve takes the place of the points (half of the tolerance), and segments of `length_mm`

@@ -39,7 +39,8 @@ struct Cusp {
   double v_mm, height_mm;
 };
 
-/// Of a point above a groove, at right angles to it. The foot lies no farther beside it than the point lies above.
+/// Returns how far a point is above a groove, at right angles to it. The foot lies no farther beside it than the point
+/// lies above.
 double distance_mm(const Underside& cutter, const Groove& groove, const Cusp& point) {
   const double above = point.height_mm - groove.at(cutter, point.v_mm);
   if (!(above > 0)) return above;

@@ -21,7 +21,7 @@ double radius_mm(const nc::Interpretation& moves, const nc::Move& m) {
   return (from_centre - from_centre.dot(arc.normal) * arc.normal).norm();
 }
 
-/// Of the curve in space: of a helix more than the circle's.
+/// Returns the radius of the curve in space: a helix has a larger one than its circle.
 double radius_of_curvature_mm(const nc::Interpretation& moves, const nc::Move& m) {
   const double along = nc::length_mm(moves, m) / moves.arcs[m.arc].sweep_rad;
   return along * along / std::max(radius_mm(moves, m), 1e-9);

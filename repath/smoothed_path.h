@@ -45,7 +45,7 @@ class Resegmenter {
   Resegmenter(const nc::Program& program, const nc::Interpretation& moves, const ResegmentOptions& options);
   ~Resegmenter();
 
-  /// Of `options` length, block time and factors count.
+  /// Uses the length, the block time and the factors of `options`.
   Resegmentation lay_out(const ResegmentOptions& options);
 
  private:

@@ -14,9 +14,9 @@
 
 namespace camber::simulate {
 
-/// Of milling alone; holes have a margin of 0. Modes of the work count where the tool is upright.
-/// Passings are invalid above a margin of 1 where the tool's modes are given, and else where the probability of chatter
-/// is above kSureOfChatter: a guessed damping alone says little.
+/// Finds the margin of each tooth passing in milling; holes have a margin of 0. Modes of the work count where the tool
+/// is upright. Passings are invalid above a margin of 1 where the tool's modes are given, and else where the
+/// probability of chatter is above kSureOfChatter: a guessed damping alone says little.
 ChatterMargins find_chatter(const machine::Job& job, const SimulatedProgram& program, std::span<const StampLoad> loads);
 constexpr double kSureOfChatter = 0.9;
 

@@ -23,7 +23,7 @@ using removal::Stock;
 
 namespace {
 
-/// As engaged_top_mm of the stamp below which the stock rises most.
+/// Returns engaged_top_mm of the stamp below which the stock rises most.
 double engaged_top_mm(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps,
                       const removal::KnownRun* known) {
   double rise = 0;

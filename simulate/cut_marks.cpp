@@ -26,7 +26,7 @@ void tell_contacts(const EnvelopeGrid& envelope, std::span<const Stamp> stamps, 
         deflection_at(envelope, deflections, deflections.row(static_cast<std::ptrdiff_t>(k)), contacts[k]));
 }
 
-/// Of even teeth.
+/// The marks of even teeth.
 class EvenMarks : public Marks {
  public:
   explicit EvenMarks(const CutTool& tool) : tool_(tool) {}
@@ -50,7 +50,8 @@ class EvenMarks : public Marks {
   const CutTool& tool_;
 };
 
-/// Of teeth that are not even. Rows are as many times as long as there are teeth, and as many times fewer at once.
+/// The marks of teeth that are not even. Rows are as many times as long as there are teeth, and as many times fewer at
+/// once.
 class UnevenMarks : public Marks {
  public:
   explicit UnevenMarks(const CutTool& tool) : tool_(tool) {}
@@ -77,7 +78,7 @@ class UnevenMarks : public Marks {
   const CutTool& tool_;
 };
 
-/// Of a drill: of a hole its deepest stamp says all.
+/// The mark of a drill: the deepest stamp of a hole says all of it.
 class HoleMarks : public Marks {
  public:
   explicit HoleMarks(const CutTool& tool) : tool_(tool) {}

@@ -79,7 +79,7 @@ class Marks {
                      removal::SurfaceMap* surface) const = 0;
 };
 
-/// Of even teeth, of teeth that are not even, or of a drill.
+/// Makes the marks of even teeth, of uneven teeth, or of a drill.
 std::unique_ptr<Marks> marks_of(const CutTool& tool);
 
 }  // namespace camber::simulate

@@ -53,9 +53,9 @@ class LoadProbe {
   };
   /// The same at the stamp's feed and at half of it.
   Look look_at_two_feeds(const removal::Stamp& stamp);
-  /// As StepEngager::approach: what the stock has around a place, read before a tooth passing needs it.
+  /// Reads what the stock has around a place before a tooth passing needs it (StepEngager::approach).
   void approach(const Vec3& tip_mm, int most);
-  /// As Stock::distance_mm, of the stock as it stands.
+  /// Returns Stock::distance_mm of the stock as it stands.
   double distance_mm(const Vec3& place_mm) const;
   /// Writes what is pending to the stock and goes on. Returns the volume removed since the last time, mm^3.
   double flush();

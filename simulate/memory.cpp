@@ -38,7 +38,7 @@ class HeightMap {
       }
   }
 
-  /// Of the surface where it is lower than the stock's top.
+  /// Returns the area of the surface where it is lower than the stock's top.
   double cut_area_mm2() const {
     double area = 0;
     for (std::size_t i = 0; i < columns_; ++i)
@@ -142,7 +142,7 @@ StockSize clipped(const StockSize& stock, const removal::Region& region) {
   return out;
 }
 
-/// Of a box's faces, what lies in another box within it.
+/// Returns the area of a box's faces that lies in another box within it.
 double faces_mm2(const StockSize& box, const StockSize& part) {
   const Vec3 size = part.max_mm - part.min_mm;
   double out = 0;

@@ -37,7 +37,7 @@ struct MemoryFactors {
   double table_bytes = 0;  ///< deflections of the stamps that are cut together
   bool allowance = false;
   bool flat = false;  ///< the blank's faces are, and kept once while the tool cuts (removal::Stock::share)
-  // Of a part of the prediction (a section); not given: the whole.
+  // Only for a part of the prediction (a section); not given: the whole.
   std::optional<double> blank_mm2{};        ///< of the stock's surface, what has a field
   std::optional<std::size_t> own_stamps{};  ///< that have loads and cutters of the target
 };
@@ -48,7 +48,7 @@ MemoryFactors memory_factors(const machine::Job& job, const nc::Program& text, c
                              const removal::StampPath& path, const StockSize& stock,
                              const removal::Region* within = nullptr);
 
-/// Of `predict`; within 30 % of the measured peak on the jobs of bench/real/memory.
+/// Estimates the memory of `predict`; within 30 % of the measured peak on the jobs of bench/real/memory.
 MemoryEstimate estimate_memory(const MemoryFactors& factors, double voxel_mm);
 
 /// Bytes of the distance field of a box's surface.

@@ -35,7 +35,7 @@ struct PartSurvey {
   double compliance_max_um_per_N = 0;
   double seconds = 0;
 
-  /// Of a run of a path; empty where nothing is to be added there.
+  /// Returns the part's compliance along a run of a path; nothing where none is to be added there.
   std::optional<deflection::PartCompliance> along(const removal::StampPath& path, std::size_t run) const;
   /// The path has the stretches of the one that was surveyed.
   bool fits(const removal::StampPath& path) const;

@@ -18,7 +18,7 @@ bool cuts(const StampLoad& load);
 /// Requires cuts(load).
 PassageCut passage_cut(const StampLoad& load, const machine::Material& material);
 
-/// Of a tool's modes, and of the work's where it is upright.
+/// Returns the table of a tool's modes, with those of the work where the tool is upright.
 dynamics::StabilityTable stability_table(const machine::Job& job, const machine::Tool& tool,
                                          std::vector<machine::Mode> modes, double speed_rpm, bool upright);
 

@@ -56,7 +56,7 @@ struct TargetWork {
   /// All that is read of blank and target lies here; null: everywhere. The target then has the cutters that reach in
   /// there, and no Target::stamps. Needs `surface`.
   const removal::Region* within = nullptr;
-  /// Of a target whose path SimulatedProgram::path has not got (`within` is given then): as the machine runs it, and
+  /// The path of a target that SimulatedProgram::path has not got (`within` is given then): as the machine runs it, and
   /// nominal.
   const motion::SparsePath *path = nullptr, *nominal = nullptr;
 };
@@ -84,8 +84,8 @@ struct PieceCut {
 CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const motion::PathStretch& path,
                     const PieceCut& piece);
 
-/// As cut(): stamps from ... from + count - 1 alone. Those before them are in the stock, and `before` says how they
-/// were bent, where that is known; contacts and loads are of these.
+/// Cuts stamps from ... from + count - 1 alone, as cut() does. Those before them are in the stock, and `before` says
+/// how they were bent, where that is known; contacts and loads are those of these stamps.
 CutResult cut_range(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
                     std::span<const removal::Stamp> stamps, std::size_t from, std::size_t count,
                     std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options,

@@ -50,7 +50,7 @@ double thickest_chip_mm(const Job& job, const removal::StampPath& path) {
   return out;
 }
 
-/// Of an upright path.
+/// Returns the thickest chip of an upright path.
 double thickest_chip_mm(const motion::PathOutline& path) {
   double out = 0;
   for (std::size_t r = 0; r < path.runs.size(); ++r)
@@ -463,7 +463,7 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const motion::PathStr
 
 namespace {
 
-/// Of the target's path, or of the program's own where that takes other ways.
+/// Returns the survey of the target's path, or one of the program's own where that takes other ways.
 std::shared_ptr<const PartSurvey> part_under(const Job& job, const Target& target, const SimulatedProgram& program) {
   if (!target.part_yields || target.part_yields->fits(program.path)) return target.part_yields;
   PartSurveyOptions options;

@@ -100,26 +100,26 @@ struct Validity {
 struct Prediction {
   CutResult cut;  ///< loads: one per stamp of the program; the volumes are without tapping, which has no chips
   HoleFigures holes;
-  /// Of the target, but for what its holes made and what is not of the job's region (region.h). error_mm: machined
-  /// minus nominal; contour_mm: the undeflected sweep of the target program as this machine runs it, minus nominal;
-  /// their difference is due to deflection (and, in a compensated program, to the shift).
+  /// Points of the target, but for what its holes made and what is not in the job's region (region.h). error_mm:
+  /// machined minus nominal; contour_mm: the undeflected sweep of the target program as this machine runs it, minus
+  /// nominal; their difference is due to deflection (and, in a compensated program, to the shift).
   std::vector<removal::SurfacePoint> surface;
   std::vector<double> total_error_mm;   ///< against the part's mesh, one per point; empty without a mesh
   removal::ErrorFigures form_error_um;  ///< error_mm; the sum of the next two, point by point
   removal::ErrorFigures deflection_um, contour_um;
   double unseen_mm2 = 0;  ///< area of the nominal surface without a point
-  /// Of the nominal surface, not in `surface`: see SurfaceRegion.
+  /// Areas of the nominal surface that are not in `surface`: see SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
   bool between = false;
   std::unique_ptr<removal::Stock> machined;
   Validity validity{};  ///< figures are of what is valid
-  /// Of contour_um, where it was taken apart (Target::contour_parts); the rest is the corner law's.
+  /// Parts of contour_um, where it was taken apart (Target::contour_parts); the rest is the corner law's.
   struct ContourFigures {
     removal::ErrorFigures lag_um, path_tolerance_um, corner_law_um;
   };
   std::optional<ContourFigures> contour_parts_um{};
   ChatterMargins chatter{};
-  /// Of deflection_um, where the part yields: what is due to the tool, and to the part.
+  /// Parts of deflection_um, where the part yields: what is due to the tool, and to the part.
   struct DeflectionFigures {
     removal::ErrorFigures tool_um, part_um;
     std::shared_ptr<const PartSurvey> survey;
@@ -153,7 +153,7 @@ struct LoadOptions {
   std::function<void(double)> progress;
 };
 
-/// As Prediction::cut: loads of every stamp, volumes, what is beyond the model.
+/// The loads of every stamp, the volumes, and what is beyond the model, as in Prediction::cut.
 struct PathLoads {
   CutResult cut;
   HoleFigures holes;

@@ -10,7 +10,7 @@
 namespace camber::simulate {
 namespace {
 
-/// Of one tool: the tooth passing that is most beyond the spindle's power, and the lines that are.
+/// The tooth passing of one tool that is most beyond the spindle's power, and the lines that are beyond it.
 struct Overload {
   double factor = 0, taken_W = 0, available_W = 0, speed_rpm = 0;
   std::uint32_t block = 0;

@@ -28,7 +28,8 @@ StampLoad summarize(const deflection::ToothPass& pass, const ToolPose& pose = {}
 /// The load of a tooth passing between two others, without the deflections.
 StampLoad between(const StampLoad& a, const StampLoad& b, double way);
 
-/// Of the tip, at any rotation step of a row of `table`. Of a bending beam the tip moves most.
+/// Returns the largest deflection of the tip over the rotation steps of a row of `table`; no other place of a bending
+/// beam moves more.
 double tip_deflection_mm(const removal::DeflectionTable& table, const float* row);
 
 }  // namespace camber::simulate

@@ -76,7 +76,7 @@ class InvalidCutters {
   };
 
   Vec3 cell_of(const Vec3& point) const { return (point / cell_mm_).array().floor(); }
-  /// Of a cell's whole numbers.
+  /// Returns one number for the three whole numbers of a cell.
   static std::uint64_t key(const Vec3& cell) {
     constexpr int kBits = 21, kHalf = 1 << (kBits - 1);
     std::uint64_t out = 0;

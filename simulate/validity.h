@@ -16,8 +16,8 @@ constexpr double kMaxInvalid = 0.5;
 /// that it comes to rest at (unsettled_stamps); and after each of them those of the same cut within a radius of the
 /// tool, whose chips are read from the stock that it left.
 ///
-/// Of `surface` the points that such a passing has made are made invalid; so are those that the undeflected cutter
-/// would have touched there, if nothing has cut them later: the tool should have made them, and was pushed away.
+/// Makes those points of `surface` invalid that such a passing has made, and those that the undeflected cutter would
+/// have touched there, if nothing has cut them later: the tool should have made them, and was pushed away.
 /// `unstable`: passings that chatter (ChatterMargins::invalid_stamps), the same.
 Validity find_validity(const machine::Job& job, const SimulatedProgram& program, const CutResult& cut,
                        std::span<const std::uint32_t> unstable, std::vector<removal::SurfacePoint>& surface);

@@ -21,7 +21,7 @@ bool forces_beyond_model(const Prediction& prediction);
 
 /// What keeps the tool from an equilibrium: "the tool is pulled into its cut (...)".
 const char* no_equilibrium_text(deflection::NoEquilibrium reason);
-/// Of a cut that was given up, with its line.
+/// Says why a cut was given up, with its line.
 std::string no_rest_sentence(const SimulatedProgram& program, const NoRest& given_up);
 
 /// One sentence for each reason why the figures are not reliable: beyond the model, chips against stock, no
