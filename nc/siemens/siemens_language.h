@@ -5,10 +5,6 @@
 
 #include "nc/language.h"
 
-namespace camber::nc {
-class FiveAxisText;
-}
-
 namespace camber::nc::siemens {
 
 LanguageEvidence evidence(std::string_view text);

@@ -6,9 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "nc/heidenhain/heidenhain_language.h"
 #include "nc/language.h"
-#include "nc/siemens/siemens_language.h"
 
 namespace camber::nc {
 namespace {
@@ -122,16 +120,7 @@ const Dialect& dialect_of_text(const Program& program, const Dialect& control) {
 }
 
 std::unique_ptr<FiveAxisText> five_axis_text(const Program& program, const Dialect& control) {
-  const Dialect& dialect = dialect_of_text(program, control);
-  switch (program.language) {
-    case LanguageId::heidenhain:
-      return heidenhain::five_axis_text(program, dialect);
-    case LanguageId::siemens:
-      return siemens::five_axis_text(program, dialect);
-    case LanguageId::iso:
-      break;
-  }
-  return iso_five_axis_text(program, dialect);
+  return language_of(program).five_axis_text(program, dialect_of_text(program, control));
 }
 
 }  // namespace camber::nc
