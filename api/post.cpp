@@ -8,7 +8,6 @@
 #include "api/rotary_program.h"
 #include "api/run.h"
 #include "kinematics/machine_program.h"
-#include "nc/language.h"
 #include "report/rewrite_summary.h"
 
 namespace camber {
@@ -41,7 +40,6 @@ std::size_t blocks_with_words(const nc::Program& program) {
 report::PostSummary post_program(const Program& given, const machine::Machine& machine, const machine::Job* job,
                                  const PostOptions& options, Diagnostics& diagnostics) {
   const nc::Program& text = given.impl().text;
-  nc::require_iso(text, "post");
   require_kinematics(machine);
   const nc::InterpreterOptions& read = given.impl().options;
   const kinematics::MachineProgram before(

@@ -19,7 +19,6 @@
 #include "feedmodel/cycle_time.h"
 #include "kinematics/control_options.h"
 #include "kinematics/machine_program.h"
-#include "nc/language.h"
 #include "plausibility/plausibility.h"
 #include "repath/post.h"
 #include "report/posture_summary.h"
@@ -53,7 +52,8 @@ nc::OneDirection written_as(const PostureCommand& command) {
   const machine::Machine& machine = command.job->machine;
   if (!command.options.indexed) return nc::OneDirection::tip;
   if (command.written) return *command.written;
-  const nc::OneDirection usual = nc::five_axis_words(kinematics::dialect_of(machine.control.kind)).one_direction;
+  const nc::Dialect& dialect = nc::dialect_of_text(*command.text, kinematics::dialect_of(machine.control.kind));
+  const nc::OneDirection usual = nc::five_axis_words(dialect).one_direction;
   const auto axes = kinematics::rotary_options(machine);
   const bool table = std::ranges::all_of(axes, &nc::RotaryOption::on_table);
   return usual == nc::OneDirection::dynamic && !table ? nc::OneDirection::joints : usual;
@@ -203,7 +203,6 @@ PostureResult v0::posture(const Program& program, const Job& job, const PostureO
   run.execute([&] {
     Diagnostics found = job.impl().found;
     found.append(program.impl().found);
-    nc::require_iso(*command.text, "posture");
     const report::PosturedOverhangs overhangs = posture_programs(command, found);
     run.settle_first(found);
     const report::PosturedProgram& chosen = overhangs.program();

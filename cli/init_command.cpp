@@ -99,20 +99,27 @@ struct ReadForJob {
   std::string machine;  ///< as the arguments name it; else one with the rotary axes that the program turns, or empty
 };
 
-/// The moves; where no machine is named and the program turns rotary axes, those of a machine that has them.
+bool wants_axes(const Diagnostic& d) {
+  return d.check == "rotary-axis" || d.check == "tilted-plane" || d.check == "not-read";
+}
+
+/// The moves; where no machine is named and the program turns rotary axes, those of a machine that has them. What such
+/// a machine cannot read either is said of it, not that rotary axes are missing.
 ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, Diagnostics& diagnostics) {
   Diagnostics upright = diagnostics;
   ReadForJob out{nc::interpret(text, interpreter_of(arguments.machine, arguments.interpreter), upright),
                  arguments.machine};
-  const bool turns = std::ranges::any_of(upright.all(), [](const Diagnostic& d) {
-    return d.check == "rotary-axis" || d.check == "tilted-plane" || d.check == "not-read";
-  });
+  const bool turns = std::ranges::any_of(upright.all(), wants_axes);
   if (turns && arguments.machine.empty())
     for (const char* preset : kFiveAxisPresets) {
       if (preset != kFiveAxisPresets.front() && !upright.has_errors()) break;
       Diagnostics tilted = diagnostics;
       nc::Interpretation with_axes = nc::interpret(text, interpreter_of(preset, arguments.interpreter), tilted);
-      if (tilted.has_errors() || !turns_the_tool(nc::summarize(text, with_axes))) continue;
+      if (tilted.has_errors()) {
+        if (upright.has_errors() && std::ranges::none_of(tilted.all(), wants_axes)) upright = std::move(tilted);
+        continue;
+      }
+      if (!turns_the_tool(nc::summarize(text, with_axes))) continue;
       Diagnostics of_axes;  // a plane that this machine's axes turn to the other side
       kinematics::check_travel(machine::read_machine(preset, of_axes), text, with_axes, of_axes);
       if (of_axes.has_errors()) continue;
@@ -133,6 +140,9 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   Diagnostics diagnostics;
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const auto [moves, machine] = read_moves(arguments, text, diagnostics);
+  if (moves.moves.empty() && !diagnostics.has_errors())
+    diagnostics.add(text.source.diagnostic(Severity::error, 0,
+                                           "the program has no moves; one that cuts was expected for a job", "no-moves"));
   const nc::Summary summary = nc::summarize(text, moves);
   const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
   settle(diagnostics, options);

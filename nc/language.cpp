@@ -11,6 +11,7 @@
 #include "nc/heidenhain/heidenhain_language.h"
 #include "nc/iso_language.h"
 #include "nc/siemens/siemens_language.h"
+#include "nc/write/five_axis_text.h"
 #include "nc/write/program_writer.h"
 
 namespace camber::nc {
@@ -25,7 +26,8 @@ constexpr std::array kLanguages{Language{.id = LanguageId::iso,
                                          .read = read_iso_program,
                                          .interpret = interpret_iso,
                                          .text_rules = iso_text_rules,
-                                         .writer = iso_writer},
+                                         .writer = iso_writer,
+                                         .five_axis_text = iso_five_axis_text},
                                 Language{.id = LanguageId::heidenhain,
                                          .name = "heidenhain",
                                          .title = "Heidenhain Klartext",
@@ -35,6 +37,7 @@ constexpr std::array kLanguages{Language{.id = LanguageId::iso,
                                          .interpret = heidenhain::interpret,
                                          .text_rules = heidenhain::text_rules,
                                          .writer = heidenhain::writer,
+                                         .five_axis_text = heidenhain::five_axis_text,
                                          .lines_have_numbers = true},
                                 Language{.id = LanguageId::siemens,
                                          .name = "siemens",
@@ -44,7 +47,8 @@ constexpr std::array kLanguages{Language{.id = LanguageId::iso,
                                          .read = siemens::read,
                                          .interpret = siemens::interpret,
                                          .text_rules = siemens::text_rules,
-                                         .writer = siemens::writer}};
+                                         .writer = siemens::writer,
+                                         .five_axis_text = siemens::five_axis_text}};
 
 std::string extension_of(const std::string& name) {
   const std::size_t point = name.find_last_of("./\\");
@@ -109,14 +113,6 @@ Program read_program(SourceText source, std::optional<LanguageId> language, Diag
 
 Program read_program(SourceText source, Diagnostics& diagnostics) {
   return read_program(std::move(source), std::nullopt, diagnostics);
-}
-
-void require_iso(const Program& program, std::string_view command) {
-  if (program.language == LanguageId::iso) return;
-  fail_on_file(program.source.name(),
-               fmt::format("{} writes ISO G code, and this program is {} ({}); an ISO program was expected", command,
-                           language_of(program).title, program.language_reason),
-               "not-supported");
 }
 
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options) {

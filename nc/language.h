@@ -19,6 +19,7 @@ namespace camber::nc {
 
 class TextRules;
 class ProgramWriter;
+class FiveAxisText;
 struct WriterFormat;
 
 /// Evidence in a text that only this language has.
@@ -41,6 +42,7 @@ struct Language {
                               Diagnostics& diagnostics) = nullptr;
   std::unique_ptr<TextRules> (*text_rules)(const Program& program) = nullptr;
   std::unique_ptr<ProgramWriter> (*writer)(const Dialect& dialect, WriterFormat format) = nullptr;
+  std::unique_ptr<FiveAxisText> (*five_axis_text)(const Program& program, const Dialect& dialect) = nullptr;
   bool lines_have_numbers = false;  ///< in programs that are written anew
 };
 
@@ -60,8 +62,6 @@ RecognizedLanguage recognize_language(const SourceText& source);
 /// the text shows.
 Program read_program(SourceText source, std::optional<LanguageId> language, Diagnostics& diagnostics);
 
-/// Throws InputError [not-supported] for a program in another language than ISO, which `command` does not write.
-void require_iso(const Program& program, std::string_view command);
 /// Returns the language of the dialect in the options.
 std::optional<LanguageId> language_asked_for(const InterpreterOptions& options);
 

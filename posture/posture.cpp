@@ -165,7 +165,7 @@ class Maker {
   /// Why one direction cannot be written as asked for; empty: it can.
   std::string frame_refused() const {
     if (!request_.options.indexed) return {};
-    const nc::Dialect& dialect = kinematics::dialect_of(job_.machine.control.kind);
+    const nc::Dialect& dialect = nc::dialect_of_text(program_, this->dialect());
     const bool dynamic = request_.written == nc::OneDirection::dynamic;
     const nc::FiveAxisWords words = nc::five_axis_words(dialect);
     if (!words.writes(request_.written))
@@ -176,6 +176,8 @@ class Maker {
       return "the head of the machine turns; G254 turns with the table, and tilted, joints or tip was expected";
     return {};
   }
+
+  const nc::Dialect& dialect() const { return kinematics::dialect_of(job_.machine.control.kind); }
 
   bool table_alone() const {
     const auto options = kinematics::rotary_options(job_.machine);
@@ -272,7 +274,8 @@ void Maker::write(Postured& out) const {
   const bool framed = request_.options.indexed &&
                       (request_.written == nc::OneDirection::tilted || request_.written == nc::OneDirection::dynamic);
   if (framed) {
-    const WrittenFrame frame = frame_text(chain, request_.written, axes.front(), decimals, nc::style_of(program_));
+    const WrittenFrame frame = frame_text(chain, request_.written, axes.front(), decimals,
+                                          *nc::five_axis_text(program_, dialect()));
     options.frame = frame.frame;
     axes.assign(axes.size(), frame.axis);
   }
@@ -311,9 +314,7 @@ void Maker::write(Postured& out) const {
     divided.back().points.push_back(upright);
   }
   repath::Posted posted;
-  repath::PostWriter(program_, moves_, job_.machine, kinematics::dialect_of(job_.machine.control.kind), options,
-                     rounding)
-      .write(motions, divided, posted);
+  repath::PostWriter(program_, moves_, job_.machine, options, rounding).write(motions, divided, posted);
   out.text = std::move(posted.text);
   out.block_of_line = std::move(posted.block_of_line);
 }

@@ -31,10 +31,10 @@
 #include "base/diagnostics.h"
 #include "kinematics/chain.h"
 #include "machine/job_file.h"
-#include "nc/emit/number_style.h"
 #include "nc/five_axis_words.h"
 #include "nc/move.h"
 #include "nc/program.h"
+#include "nc/write/five_axis_text.h"
 #include "posture/choose.h"
 #include "posture/surroundings.h"
 #include "repath/post.h"
@@ -97,16 +97,16 @@ std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& 
 /// The least overhang that is tried: flutes, and one diameter.
 double least_overhang_mm(const machine::Tool& tool);
 
-// Writes the frame of an operation at one direction of the tool: G68.2, G254 or joints.
+// Writes the frame of an operation at one direction of the tool.
 
 struct WrittenFrame {
   repath::PostFrame frame;
   Vec3 axis = Vec3::UnitZ();  ///< axis that follows from the words as they are written
 };
 
-/// G68.2 and G53.1, or G254 (tilted, dynamic), for this direction, the rotary axes back at 0 behind it.
+/// The lines of the language for a tilted or a dynamic frame in this direction, the rotary axes back at 0 behind it.
 WrittenFrame frame_text(const kinematics::Chain& chain, nc::OneDirection written, const Vec3& axis, int decimals,
-                        const nc::NumberStyle& style);
+                        const nc::FiveAxisText& text);
 
 // Makes the stock an obstacle, as the tool that is to be tilted finds it.
 

@@ -44,12 +44,14 @@ class Post {
   Posted run() {
     Posted out;
     if (!origin_is_known()) return out;
+    const auto text = nc::five_axis_text(program_, kinematics::dialect_of(machine_.control.kind));
+    if (!language_says(*text)) return out;
     const PostMotions motions = post_motions(program_, moves_, machine_, options_.target, diagnostics_);
     if (diagnostics_.has_errors()) return out;
     if (motions.motions.empty()) {
       fail(nullptr, "nothing-to-post",
            options_.target == PostTarget::joints
-               ? "no move is under tool-centre-point control; G43.4, G43.5, G234 or M428 was expected"
+               ? fmt::format("no move is under tool-centre-point control; {} was expected", text->control_words())
                : "no move runs with turned rotary axes outside tool-centre-point control and tilted frames; A, B or C "
                  "was expected");
       return out;
@@ -63,8 +65,7 @@ class Post {
         plan.push_back({.motion = i, .choice = {}, .before = {}});
     const auto divided = divide(motions, frame, plan, out);
     if (diagnostics_.has_errors()) return out;
-    PostWriter(program_, moves_, machine_, kinematics::dialect_of(machine_.control.kind), options_, rounding_)
-        .write(motions, divided, out);
+    PostWriter(program_, moves_, machine_, options_, rounding_).write(motions, divided, out);
     return out;
   }
 
@@ -72,6 +73,24 @@ class Post {
   void fail(const nc::Move* move, const char* check, std::string message) {
     const std::size_t offset = move ? program_.blocks[move->block].offset : 0;
     diagnostics_.add(program_.source.diagnostic(Severity::error, offset, std::move(message), check));
+  }
+
+  /// Whether the language of the program has words for what is asked for.
+  bool language_says(const nc::FiveAxisText& text) {
+    if (options_.inverse_time)
+      if (const std::string why = text.feed_refused(nc::FeedMode::inverse_time); !why.empty()) {
+        fail(nullptr, "inverse-time", why);
+        return false;
+      }
+    if (options_.target == PostTarget::tcp) return true;
+    for (const nc::Move& m : moves_.moves) {
+      if (moves_.state_of(m).tip_control == nc::TipControl::off) continue;
+      const std::string why = text.joints_refused(moves_, m);
+      if (why.empty()) continue;
+      fail(&m, "tilted-frame", why);
+      return false;
+    }
+    return true;
   }
 
   bool origin_is_known() {

@@ -1,12 +1,15 @@
 #include "repath/post_motions.h"
 
 #include <algorithm>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "base/units.h"
 #include "kinematics/feed_meaning.h"
 #include "kinematics/program_joints.h"
+#include "nc/emit/text_rules.h"
+#include "nc/language.h"
 
 namespace camber::repath {
 namespace {
@@ -24,7 +27,8 @@ class Collector {
         machine_(machine),
         target_(target),
         diagnostics_(diagnostics),
-        free_machine_(without_travel(machine)) {}
+        free_machine_(without_travel(machine)),
+        rules_(nc::language_of(program).text_rules(program)) {}
 
   PostMotions run() {
     choose();
@@ -65,14 +69,6 @@ class Collector {
         program_.source.diagnostic(Severity::error, program_.blocks[m.block].offset, std::move(message), check));
   }
 
-  /// G28, G29, G30, G53.
-  bool names_reference(std::uint32_t block) const {
-    const auto words = program_.words_of(block);
-    return std::any_of(words.begin(), words.end(), [](const nc::Word& w) {
-      return w.letter == 'G' && (w.value == 28 || w.value == 29 || w.value == 30 || w.value == 53);
-    });
-  }
-
   /// Moves to rewrite, and those whose rotary axes words turn.
   void choose() {
     const std::size_t n = moves_.moves.size();
@@ -85,7 +81,7 @@ class Collector {
       const nc::Move& m = moves_.moves[i];
       const nc::ModalState& state = moves_.state_of(m);
       const bool tip_control = state.tip_control != nc::TipControl::off;
-      const bool plain = moves_linear_axes(m) && !to_machine[i] && !names_reference(m.block);
+      const bool plain = moves_linear_axes(m) && !to_machine[i] && !rules_->goes_to_machine_place(m.block);
       if (target_ == PostTarget::joints)
         wanted_[i] = plain && tip_control;
       else
@@ -188,6 +184,7 @@ class Collector {
   PostTarget target_;
   Diagnostics& diagnostics_;
   machine::Machine free_machine_;
+  std::unique_ptr<nc::TextRules> rules_;
   std::vector<bool> wanted_, turned_by_words_;
   bool said_editable_ = false, said_unknown_ = false;
 };

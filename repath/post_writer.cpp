@@ -1,46 +1,19 @@
 #include "repath/post_writer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "base/units.h"
-#include "nc/emit/text_rules.h"
-#include "nc/five_axis_words.h"
-#include "nc/language.h"
+#include "kinematics/control_options.h"
 
 namespace camber::repath {
 namespace {
 
 constexpr double kNoMotionS = 1e-3;   ///< of a block in inverse time that moves nothing
 constexpr double kNoLengthMm = 1e-9;  // as kinematics/feed_meaning.cpp
-constexpr std::initializer_list<double> kTipControl{43.4, 43.5, 234};
-constexpr std::initializer_list<double> kFeedModes{93, 94, 95};
-constexpr std::initializer_list<double> kMotions{0, 1, 2, 3};
-
-std::string tip_control_word(const nc::Dialect& dialect) {
-  return std::string(nc::five_axis_words(dialect).tip_control);
-}
-
 double unit_mm(const nc::ModalState& state) { return state.inch ? kMmPerInch : 1; }
-
-int code_of(nc::FeedMode mode) {
-  return mode == nc::FeedMode::inverse_time ? 93 : mode == nc::FeedMode::per_minute ? 94 : 95;
-}
-
-nc::FeedMode mode_of_code(double code) {
-  return code == 93 ? nc::FeedMode::inverse_time : code == 94 ? nc::FeedMode::per_minute : nc::FeedMode::per_revolution;
-}
-
-bool acts_at_end(const nc::Word& w) {
-  constexpr std::array<double, 7> kEnds{0, 1, 2, 5, 9, 30, 60};
-  if (w.letter == 'G') return w.value == 9;
-  return w.letter == 'M' && std::find(kEnds.begin(), kEnds.end(), w.value) != kEnds.end();
-}
 
 int decimals_for(double value) {
   constexpr int kDigits = 5;
@@ -51,51 +24,38 @@ int decimals_for(double value) {
 }  // namespace
 
 PostWriter::PostWriter(const nc::Program& program, const nc::Interpretation& moves, const machine::Machine& machine,
-                       const nc::Dialect& dialect, const PostOptions& options, const PostRounding& rounding)
+                       const PostOptions& options, const PostRounding& rounding)
     : program_(program),
       moves_(moves),
       machine_(machine),
-      dialect_(dialect),
       options_(options),
       rounding_(rounding),
-      style_(nc::style_of(program)),
-      feed_style_(nc::feed_style_of(program)),
+      text_(nc::five_axis_text(program, kinematics::dialect_of(machine.control.kind))),
       tool_axis_(machine.kinematics.tool_axis.normalized()),
       gauge_mm_(machine.kinematics.gauge_point_mm) {
   for (const char letter : {'a', 'b', 'c'})
     if (machine.kinematics.chain.find(letter) != std::string::npos) axes_ += static_cast<char>(letter - 'a' + 'A');
 }
 
-BlockEdit& PostWriter::edit_of(std::uint32_t block) { return edits_.try_emplace(block, program_, block).first->second; }
+nc::BlockEdit& PostWriter::edit_of(std::uint32_t block) {
+  const auto found = edits_.find(block);
+  return found != edits_.end() ? found->second : edits_.emplace(block, text_->edit_of(block)).first->second;
+}
 
 /// To joints: no tool-centre-point control anywhere in the text, but the tool length.
-void PostWriter::replace_codes() {
-  const double on = dialect_.tip_control_on_m, off = dialect_.tip_control_off_m;
-  for (std::uint32_t b = 0; b < program_.blocks.size(); ++b)
-    for (const nc::Word& w : program_.words_of(b)) {
-      if (w.letter == 'G' && std::find(kTipControl.begin(), kTipControl.end(), w.value) != kTipControl.end())
-        edit_of(b).replace(w, "43");
-      else if (w.letter == 'M' && on != 0 && (w.value == on || w.value == off))
-        edit_of(b).take_out(w);
-    }
+void PostWriter::take_out_control() {
+  for (std::uint32_t b = 0; b < program_.blocks.size(); ++b) {
+    nc::BlockEdit edit = text_->edit_of(b);
+    text_->take_out_control(edit);
+    if (edit.changed()) edits_.emplace(b, std::move(edit));
+  }
 }
 
 /// Modal codes of the text on the way to a block.
 void PostWriter::look_at_codes_until(std::uint32_t block) {
   for (; next_block_ < block; ++next_block_) {
-    std::string number;
-    const auto words = program_.words_of(next_block_);
-    for (const nc::Word& w : words)
-      if (w.letter == 'H')
-        number = program_.source.text().substr(w.offset + w.value_at, static_cast<std::size_t>(w.length - w.value_at));
-    for (const nc::Word& w : words) {
-      if (w.letter == 'G' && (w.value == 43 || w.value == 44)) {
-        length_active_ = true;
-        length_number_ = number;
-      }
-      if (w.letter == 'G' && w.value == 49) length_active_ = false;
-      if (w.letter == 'G' && (w.value == 93 || w.value == 94 || w.value == 95)) feed_mode_ = mode_of_code(w.value);
-    }
+    text_->pass(next_block_);
+    if (const auto mode = text_->feed_mode_of(next_block_)) feed_mode_ = *mode;
   }
 }
 
@@ -124,17 +84,17 @@ std::string PostWriter::place_word(const nc::Move& move, int axis, double wanted
   const int decimals = axis >= 3    ? rounding_.decimals_deg
                        : state.inch ? rounding_.decimals_inch
                                     : rounding_.decimals_mm;
-  const double value = state.incremental ? wanted - now : wanted;
+  const double value = text_->rules().incremental(state, like) ? wanted - now : wanted;
   const std::string_view number =
       like ? std::string_view(program_.source.text())
                  .substr(like->offset + like->value_at, static_cast<std::size_t>(like->length - like->value_at))
            : std::string_view();
   if (like && nc::rounded(value, decimals) == like->value) return std::string(number);
-  return nc::format_number(value, decimals, style_, number);
+  return nc::format_number(value, decimals, text_->style(), number);
 }
 
 /// The words of the place: those that change, and in the block's own text those that it has.
-void PostWriter::set_places(const nc::Move& move, const PostPoint& point, BlockEdit* edit,
+void PostWriter::set_places(const nc::Move& move, const PostPoint& point, nc::BlockEdit* edit,
                             std::vector<std::string>& words) {
   const Vec3 wanted = wanted_point(move, point);
   const bool inch = moves_.state_of(move).inch;
@@ -146,6 +106,10 @@ void PostWriter::set_places(const nc::Move& move, const PostPoint& point, BlockE
                                 : nc::rounded(wanted[axis], inch ? rounding_.decimals_inch : rounding_.decimals_mm);
     const nc::Word* own = edit ? edit->find(letter) : nullptr;
     if (!own && !all_words_ && to == now) continue;
+    if (own && !text_->keeps_form(*own)) {
+      text_->take_out(*edit, *own);
+      own = nullptr;
+    }
     const std::string number = place_word(move, axis, to, now, own);
     if (edit)
       edit->set(letter, number);
@@ -178,27 +142,26 @@ PostWriter::Number PostWriter::feed_of(const nc::Move& move, const PostPoint& po
   return {value, decimals_for(value)};
 }
 
-void PostWriter::set_feed(const nc::Move& move, const PostPoint& point, const Vec3& before, const Vec3& turn_deg,
-                          BlockEdit* edit, std::vector<std::string>& words) {
+std::string PostWriter::set_feed(const nc::Move& move, const PostPoint& point, const Vec3& before,
+                                 const Vec3& turn_deg, nc::BlockEdit* edit) {
   const nc::Word* own = edit ? edit->find('F') : nullptr;
   const bool inverse = mode_of(move) == nc::FeedMode::inverse_time;
   if (point.rapid || (point.time_s <= 0 && !inverse)) {
     if (own && !point.extra) feed_ = own->value;
-    return;
+    return {};
   }
   const Number wanted = feed_of(move, point, before, turn_deg);
-  if (wanted.value <= 0) return;  // nothing moves
+  if (wanted.value <= 0) return {};  // nothing moves
   const double rounded = nc::rounded(wanted.value, wanted.decimals);
-  if (!inverse && !own && rounded == feed_) return;
+  const bool other = edit && text_->take_out_other_feeds(*edit);
+  if (!inverse && !own && !other && rounded == feed_) return {};
   const std::string number = own && own->value == rounded
                                  ? std::string(edit->number(*own))
-                                 : nc::format_number(wanted.value, wanted.decimals, feed_style_);
-  if (edit)
-    edit->set('F', number);
-  else
-    words.push_back('F' + number);
+                                 : nc::format_number(wanted.value, wanted.decimals, text_->feed_style());
+  if (edit) edit->set('F', number);
   feed_ = inverse ? -1 : rounded;
   feed_is_ours_ = true;
+  return edit ? std::string() : 'F' + number;
 }
 
 /// Tool-centre-point control on.
@@ -206,53 +169,27 @@ void PostWriter::open_run(const nc::Move& move, std::vector<std::string>& lines)
   if (options_.frame) lines.insert(lines.end(), options_.frame->before.begin(), options_.frame->before.end());
   if (options_.target != PostTarget::tcp || options_.frame) return;
   look_at_codes_until(move.block);
-  const std::string number = length_active_ && !length_number_.empty() ? length_number_ : "0";
-  if (dialect_.tip_control_on_m == 0) {
-    if (!BlockEdit(program_, move.block).find_code('G', {43}))
-      lines.push_back(tip_control_word(dialect_) + " H" + number);
-    keep_tip_control(move.block, move.block + 1);
-    return;
-  }
-  if (!length_active_) lines.push_back("G43 H0");
-  lines.push_back(fmt::format("M{}", dialect_.tip_control_on_m));
+  for (std::string& line : text_->control_on(move.block)) lines.push_back(std::move(line));
+  keep_tip_control(move.block, move.block + 1);
 }
 
-/// Where a G code switches tool-centre-point control on, G43 and G49 of the same length switch it off.
+/// What the text has in these blocks must not switch tool-centre-point control off.
 void PostWriter::keep_tip_control(std::uint32_t first, std::uint32_t end) {
-  if (options_.target != PostTarget::tcp || options_.frame || dialect_.tip_control_on_m != 0) return;
+  if (options_.target != PostTarget::tcp || options_.frame) return;
   for (std::uint32_t b = first; b < end; ++b) {
-    BlockEdit block(program_, b);
-    if (const nc::Word* w = block.find_code('G', {43})) edit_of(b).replace(*w, tip_control_word(dialect_).substr(1));
-    if (const nc::Word* w = block.find_code('G', {49})) edit_of(b).take_out(*w);
+    nc::BlockEdit probe = text_->edit_of(b);
+    text_->keep_control(probe);
+    if (probe.changed()) text_->keep_control(edit_of(b));
   }
 }
 
 /// Feed mode of a feed block.
-void PostWriter::write_mode(const TipMotion& motion, BlockEdit& edit, std::vector<std::string>& front) {
+void PostWriter::write_mode(const TipMotion& motion, nc::BlockEdit& edit, std::vector<std::string>& front) {
   const nc::FeedMode wanted = mode_of(moves_.moves[motion.move]);
   if (motion.rapid || feed_mode_ == wanted) return;
-  if (const nc::Word* own = edit.find_code('G', kFeedModes))
-    edit.replace(*own, std::to_string(code_of(wanted)));
-  else
-    front.push_back(fmt::format("G{}", code_of(wanted)));
+  if (!text_->set_feed_mode(edit, wanted)) front.push_back(text_->feed_line(wanted, {}));
   feed_mode_ = wanted;
   feed_is_ours_ = true;
-}
-
-void PostWriter::write_motion_code(int code, BlockEdit* edit, std::vector<std::string>& words) {
-  const bool same = code == motion_code_;
-  motion_code_ = code;
-  const nc::Word* own = edit ? edit->find_code('G', kMotions) : nullptr;
-  if (own) {
-    const bool two = edit->number(*own).size() == 2;
-    if (own->value != code) edit->replace(*own, fmt::format("{}{}", two ? "0" : "", code));
-    return;
-  }
-  if (same) return;
-  if (edit)
-    edit->add_code(fmt::format("G{}", code));
-  else
-    words.push_back(fmt::format("G{}", code));
 }
 
 void PostWriter::write_motion(const TipMotion& motion, const DividedMotion& divided, bool first_of_run) {
@@ -261,36 +198,35 @@ void PostWriter::write_motion(const TipMotion& motion, const DividedMotion& divi
   if (first_of_run) {
     open_run(move, front);
     all_words_ = true;
-    motion_code_ = motion.rapid ? 0 : motion.arc ? 2 : 1;  // modal in the text, where the block does not say it
+    // Modal in the text, where the block does not say it.
+    rapid_ = motion.arc ? std::nullopt : std::optional(motion.rapid);
   } else {
     keep_tip_control(next_block_, move.block + 1);
   }
   look_at_codes_until(move.block + 1);
-  BlockEdit& edit = edit_of(move.block);
-  if (motion.arc || moves_.state_of(move).tip_control == nc::TipControl::directions)
-    for (const char letter : {'I', 'J', 'K', 'R', 'P'})
-      if (const nc::Word* w = edit.find(letter)) edit.take_out(*w);
+  nc::BlockEdit& edit = edit_of(move.block);
+  text_->take_out_curve(edit, motion.arc, moves_.state_of(move).tip_control == nc::TipControl::directions);
   write_mode(motion, edit, front);
   std::vector<nc::Word> at_end;
   if (std::count_if(divided.points.begin(), divided.points.end(), [](const auto& p) { return !p.extra; }) > 1)
-    for (const nc::Word& w : program_.words_of(move.block))
-      if (acts_at_end(w)) at_end.push_back(w);
-  for (const nc::Word& w : at_end) edit.take_out(w);
+    at_end = text_->rules().words_at_end(move.block);
+  for (const nc::Word& w : at_end) edit.take_out(w.offset, w.length);
   bool own_text = false;
   for (const PostPoint& point : divided.points) {
     const bool first = !point.extra && !own_text;
-    BlockEdit* here = first ? &edit : nullptr;
-    std::vector<std::string> words;
-    write_motion_code(point.rapid ? 0 : 1, here, words);
+    nc::BlockEdit* here = first ? &edit : nullptr;
+    nc::LineWords line{.rapid = point.rapid, .in_force = rapid_ == point.rapid, .places = {}, .feed = {}, .at_end = {}};
+    if (first) text_->make_line(edit, line.rapid, line.in_force);
+    rapid_ = point.rapid;
     const Vec3 before = at_, before_deg = deg_;
-    set_places(move, point, here, words);
-    set_feed(move, point, before, deg_ - before_deg, here, words);
+    set_places(move, point, here, line.places);
+    line.feed = set_feed(move, point, before, deg_ - before_deg, here);
     linear_mm_ = point.linear_mm;
     own_text = own_text || first;
     if (!first) {
       if (&point == &divided.points.back())
-        for (const nc::Word& w : at_end) words.push_back(program_.source.text().substr(w.offset, w.length));
-      (own_text ? further : front).push_back(edit.further(words));
+        for (const nc::Word& w : at_end) line.at_end.push_back(program_.source.text().substr(w.offset, w.length));
+      (own_text ? further : front).push_back(text_->further_line(edit, line));
     }
     if (!point.extra)
       lines_[move.block].push_back({static_cast<std::uint32_t>(further.size()), motion.move, point.from, point.to});
@@ -301,18 +237,16 @@ std::string PostWriter::modal_feed_word(const nc::Move& move) const {
   const nc::ModalState& state = moves_.state_of(move);
   double value = 60 * move.feed_mm_per_s / unit_mm(state);
   if (state.feed_mode == nc::FeedMode::per_revolution && state.spindle_speed_rpm > 0) value /= state.spindle_speed_rpm;
-  return "F" + nc::format_number(value, decimals_for(value), feed_style_);
+  return "F" + nc::format_number(value, decimals_for(value), text_->feed_style());
 }
 
 /// The place of the linear axes in their own coordinates, where the text says that of the tip.
-std::string PostWriter::place_line(const nc::Move& move) const {
+std::vector<std::string> PostWriter::place_lines(const nc::Move& move) const {
   const Vec3 at = text_point(move, joint_point_mm(move, linear_mm_));
-  std::string out = moves_.state_of(move).incremental ? "G90 " : "";
-  out += motion_code_ == 0 ? "G0" : "G1";
   const int decimals = moves_.state_of(move).inch ? rounding_.decimals_inch : rounding_.decimals_mm;
-  for (int axis = 0; axis < 3; ++axis)
-    out += fmt::format(" {}{}", "XYZ"[axis], nc::format_number(at[axis], decimals, style_));
-  return out;
+  std::vector<std::string> words;
+  for (int axis = 0; axis < 3; ++axis) words.push_back(text_->word("XYZ"[axis], at[axis], decimals));
+  return text_->place_lines(words, rapid_.value_or(false), moves_.state_of(move).incremental);
 }
 
 /// Tool-centre-point control off.
@@ -320,15 +254,9 @@ std::vector<std::string> PostWriter::codes_behind(const nc::Move& last, std::siz
   if (options_.frame) return options_.frame->behind;
   std::vector<std::string> out;
   if (options_.target == PostTarget::joints || next >= moves_.moves.size()) return out;
-  if (dialect_.tip_control_on_m != 0) {
-    out.push_back(fmt::format("M{}", dialect_.tip_control_off_m));
-    if (!length_active_) out.push_back("G49");
-  } else {
-    out.push_back(length_active_ ? "G43 H" + (length_number_.empty() ? "0" : length_number_) : "G49");
-  }
+  out = text_->control_off();
   if (deg_.isZero(0)) return out;
-  out.push_back(place_line(last));
-  if (moves_.state_of(last).incremental) out.push_back("G91");
+  for (std::string& line : place_lines(last)) out.push_back(std::move(line));
   return out;
 }
 
@@ -339,29 +267,34 @@ void PostWriter::close_run(std::size_t last, std::size_t next) {
   for (std::string& line : codes_behind(move, next)) lines.push_back(std::move(line));
   if (next >= moves_.moves.size() || !feed_is_ours_) return;
   const nc::FeedMode mode = moves_.state_of(move).feed_mode;
-  std::string words;
-  if (feed_mode_ != mode) words = fmt::format("G{}", code_of(mode));
+  std::string feed;
+  const bool other_mode = feed_mode_ != mode;
   std::size_t cut = next;
   while (cut < moves_.moves.size() && moves_.moves[cut].feed_mm_per_s <= 0) ++cut;
   const bool relies = cut < moves_.moves.size() && !moves_.moves[cut].feed_given && mode != nc::FeedMode::inverse_time;
   const double given = relies ? 60 * moves_.moves[cut].feed_mm_per_s / unit_mm(moves_.state_of(moves_.moves[cut])) : 0;
-  if (relies && (!words.empty() || std::abs(given - feed_) > 1e-6 * given))
-    words += (words.empty() ? "" : " ") + modal_feed_word(moves_.moves[cut]);
-  if (!words.empty()) lines.push_back(words);
+  if (relies && (other_mode || std::abs(given - feed_) > 1e-6 * given)) feed = modal_feed_word(moves_.moves[cut]);
+  if (other_mode || !feed.empty())
+    lines.push_back(text_->feed_line(other_mode ? std::optional(mode) : std::nullopt, feed));
   feed_mode_ = mode;
   feed_is_ours_ = false;
 }
 
-/// A move that stays as it is.
-void PostWriter::keep(const nc::Move& move) {
+/// A move that stays as it is: where it leaves the axes, a block behind it may count from.
+void PostWriter::keep(std::uint32_t index) {
+  const nc::Move& move = moves_.moves[index];
   if (move.kind == nc::MoveKind::dwell) return;
   look_at_codes_until(move.block + 1);
   all_words_ = true;
   feed_ = -1;
+  if (move.open_axes == 0) at_ = text_point(move, move.end_mm);
+  const auto target = std::ranges::lower_bound(moves_.rotary, index, {}, &nc::RotaryTarget::move);
+  if (target != moves_.rotary.end() && target->move == index && !target->is_direction)
+    for (Eigen::Index axis = 0; axis < 3; ++axis) deg_[axis] = deg_from_rad(target->end[axis]);
 }
 
 void PostWriter::write(const PostMotions& motions, const std::vector<DividedMotion>& divided, Posted& out) {
-  if (options_.target == PostTarget::joints) replace_codes();
+  if (options_.target == PostTarget::joints) take_out_control();
   std::size_t last = PostMotions::kKept;
   for (std::size_t i = 0; i < moves_.moves.size(); ++i) {
     const std::size_t k = motions.of_move[i];
@@ -370,7 +303,7 @@ void PostWriter::write(const PostMotions& motions, const std::vector<DividedMoti
         close_run(last, i);
         last = PostMotions::kKept;
       }
-      keep(moves_.moves[i]);
+      keep(static_cast<std::uint32_t>(i));
       continue;
     }
     if (last != PostMotions::kKept && motions.first_of_run[k]) {
@@ -384,8 +317,7 @@ void PostWriter::write(const PostMotions& motions, const std::vector<DividedMoti
 }
 
 void PostWriter::put_together(Posted& out) {
-  const auto rules = nc::language_of(program_).text_rules(program_);
-  nc::EmittedText text(program_, *rules);
+  nc::EmittedText text(program_, text_->rules());
   std::map<std::uint32_t, std::size_t> lines_in_front;
   for (const auto& [block, edit] : edits_) {
     const std::string end = text.line_end_of(block);

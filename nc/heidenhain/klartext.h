@@ -153,6 +153,7 @@ class Klartext {
   void define_tool(const Statement& s);
   void set_spindle_speed(double rpm, std::size_t offset);
   std::optional<double> tool_radius_mm() const;
+  void update_tool_length();
   double turns_per_s(const char* word);
   double teeth();
   double cutting_feed(const std::string& what);
@@ -177,7 +178,8 @@ class Klartext {
   void arc_to(const Vec3& programmed_end, const Arc& arc, const BlockValues& b, bool by_radius);
   bool make_arc_of(ArcWords words, const BlockValues& b);
   int sense_of(const BlockValues& b);
-  Move& add_move(MoveKind kind, const Vec3& end_mm);
+  /// `absolute`: bits of the axes that absolute words put there.
+  Move& add_move(MoveKind kind, const Vec3& end_mm, std::uint8_t absolute = 0);
   void prepare_cutting(const char* what, std::uint8_t given);
   void settle(std::uint8_t given);
   std::uint32_t state_index();

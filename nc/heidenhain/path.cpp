@@ -199,7 +199,7 @@ std::uint32_t Klartext::state_index() {
   return state_index_ = shared_state(out_.states, state_);
 }
 
-Move& Klartext::add_move(MoveKind kind, const Vec3& end_mm) {
+Move& Klartext::add_move(MoveKind kind, const Vec3& end_mm, std::uint8_t absolute) {
   Move move;
   move.start_mm = position_mm_;
   move.end_mm = end_mm;
@@ -221,7 +221,7 @@ Move& Klartext::add_move(MoveKind kind, const Vec3& end_mm) {
     std::uint8_t open = open_axes_;
     for (unsigned axis = 0; axis < 3; ++axis)
       if (place_[axis] != Place::known) open = static_cast<std::uint8_t>(open | 1U << axis);
-    move.open_axes = open & 7U;
+    move.open_axes = open & ~absolute & 7U;
     move.start_open = start_open_;
     const auto& targets = out_.machine_targets;
     start_open_ = move.open_axes != 0 || (!targets.empty() && targets.back().move == out_.moves.size());
@@ -270,12 +270,13 @@ void Klartext::line_to(const Vec3& programmed_end, std::uint8_t given, const Blo
   std::uint8_t absolute = given;
   absolute = static_cast<std::uint8_t>(absolute & ~b.step);
   if (b.rapid) {
-    add_move(MoveKind::rapid, end);
+    add_move(MoveKind::rapid, end, absolute);
   } else {
     prepare_cutting("L", absolute);
     const double feed = cutting_feed("L");
     const Vec3 way = programmed_end - programmed();
-    add_move(MoveKind::linear, end).feed_mm_per_s = plunge_factor_ && way.norm() > 0 ? plunging_feed(feed, way) : feed;
+    add_move(MoveKind::linear, end, absolute).feed_mm_per_s =
+        plunge_factor_ && way.norm() > 0 ? plunging_feed(feed, way) : feed;
     if (plunge_factor_) out_.moves.back().editable = false;
   }
   settle(absolute);
@@ -408,13 +409,13 @@ void Klartext::add_rotary(const BlockValues& b, std::size_t move) {
   }
 }
 
-/// A block of rotary words alone: a move where the machine has such axes.
+/// A block of rotary words alone, or a statement that turns the axes: a move where the machine has such axes.
 void Klartext::turn_only(const BlockValues& b) {
   if (options_.rotary_axes.empty()) return add_rotary(b, 0);
   const double feed = b.rapid ? 0 : cutting_feed("L");
   Move& move = add_move(b.rapid ? MoveKind::rapid : MoveKind::linear, position_mm_);
   move.feed_mm_per_s = feed;
-  move.editable = false;
+  if (!has_words(statement_->kind) || b.by_parameter) move.editable = false;
   add_rotary(b, out_.moves.size() - 1);
 }
 

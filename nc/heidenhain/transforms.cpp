@@ -457,11 +457,7 @@ void Klartext::set_tip_control(bool on, std::size_t offset) {
     // The tip in the tilted plane: as a frame that is fixed to the part.
     state_.work_frame = WorkFrame::machine;
   }
-  if (on) {
-    const auto tool = tools_.find(state_.tool);
-    state_.tool_length_mm.reset();
-    if (tool != tools_.end() && tool->second.length_mm) state_.tool_length_mm = tool->second.length_mm;
-  }
+  if (on) update_tool_length();
   (void)offset;
   state_.tip_control = control;
   if (!on && tilt_) state_.work_frame = WorkFrame::tilted;

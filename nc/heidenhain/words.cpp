@@ -151,6 +151,7 @@ BlockValues Klartext::read_values(const Statement& s) {
         }
         once(b.rotary[axis].has_value());
         b.rotary[axis] = value;
+        b.by_parameter |= by_parameter;
         if (is_incremental(program, word)) b.rotary_step = static_cast<std::uint8_t>(b.rotary_step | 1U << axis);
         break;
       }
@@ -447,6 +448,19 @@ std::optional<double> Klartext::tool_radius_mm() const {
   return *found->second.radius_mm + tool_delta_radius_mm_;
 }
 
+/// The length of the tool counts from TOOL CALL on.
+void Klartext::update_tool_length() {
+  if (options_.rotary_axes.empty()) return;
+  std::optional<double> length = 0.0;
+  if (state_.tool != 0) {
+    const auto tool = tools_.find(state_.tool);
+    length = tool == tools_.end() ? std::nullopt : tool->second.length_mm;
+  }
+  if (length == state_.tool_length_mm) return;
+  state_.tool_length_mm = length;
+  state_changed_ = true;
+}
+
 void Klartext::set_spindle_speed(double rpm, std::size_t offset) {
   if (rpm < 0) {
     error(offset, "spindle-speed", fmt::format("S{} is negative; zero or more was expected", rpm));
@@ -484,6 +498,7 @@ void Klartext::call_tool(const Statement& s) {
     state_.tool = *number;
     tool_called_ = true;
     tool_delta_radius_mm_ = 0;
+    update_tool_length();
     add_event(EventKind::tool_change, *number);
   }
   BlockValues b;
@@ -550,11 +565,12 @@ void Klartext::define_tool(const Statement& s) {
   bool defined = false;
   while (at.more()) {
     const std::size_t offset = at.offset();
+    // L+0 and R+0 of a post that leaves them to the tool table say nothing.
     if (at.accept('L')) {
-      tools_[*number].length_mm = known(read_value(at, parameters_), offset) * unit_mm();
+      const double length = known(read_value(at, parameters_), offset) * unit_mm();
+      if (length != 0 || !tools_[*number].length_mm) tools_[*number].length_mm = length;
     } else if (at.accept('R')) {
       const double radius = known(read_value(at, parameters_), offset) * unit_mm();
-      // R+0 of a post that leaves the radius to the tool table says nothing.
       if (radius != 0 || !tools_[*number].radius_mm) tools_[*number].radius_mm = radius;
     } else {
       throw FormulaError(offset, "not-a-word", fmt::format("{} in TOOL DEF; L or R was expected", at.word()));

@@ -6,6 +6,7 @@
 #include <random>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
@@ -167,6 +168,24 @@ class PostureInATrough : public ::testing::Test {
     return text + "M5\nM2\n";
   }
 
+  /// The same in Klartext or for a Sinumerik: lines, and the head in words of the language.
+  static std::string rows_in(const std::string& language, const TriangleMesh& mesh) {
+    const bool klartext = language == "heidenhain";
+    std::istringstream lines(rows(mesh));
+    std::string out = klartext ? "0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S9000\n2 M3\n"
+                               : "%_N_A_MPF\nN1 G17 G71 G90 G94\nN2 T1\nN3 M6 D1\nN4 G54 S9000 M3\n";
+    int number = klartext ? 3 : 5;
+    bool rapid = true;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("G0 ") || line.starts_with("G1 ")) rapid = line[1] == '0';
+      const std::string words = line.starts_with("G") ? line.substr(3) : line;
+      if (words.empty() || words[0] < 'X' || words[0] > 'Z') continue;
+      out += klartext ? fmt::format("{} L {}{}\n", number++, words, rapid ? " R0 FMAX" : "")
+                      : fmt::format("N{} {} {}\n", number++, rapid ? "G0" : "G1", words);
+    }
+    return out + (klartext ? fmt::format("{} M30\n{} END PGM A MM\n", number, number + 1) : "N9000 M30\n");
+  }
+
   /// Lowered onto the corners of the mesh: near enough to touch.
   static double tip(const TriangleMesh& mesh, double x, double y) {
     double z = -1e9;
@@ -208,6 +227,8 @@ class PostureInATrough : public ::testing::Test {
     nc::InterpreterOptions options;
     options.inch = false;
     options.rotary_axes = kinematics::rotary_options(job_.machine);
+    options.work_offsets_mm[54] = Vec3(25, -15, 5);
+    options.tool_offsets[1].length_mm = 120;
     options = kinematics::interpreter_options(job_.machine, options);
     program_ = nc::read_program(SourceText("p.nc", text), diagnostics);
     moves_ = nc::interpret(program_, options, diagnostics);
@@ -220,6 +241,8 @@ class PostureInATrough : public ::testing::Test {
     nc::InterpreterOptions options;
     options.inch = false;
     options.rotary_axes = kinematics::rotary_options(job_.machine);
+    options.work_offsets_mm[54] = Vec3(25, -15, 5);
+    options.tool_offsets[1].length_mm = 120;
     options = kinematics::interpreter_options(job_.machine, options);
     const nc::Program program = nc::read_program(SourceText("out.nc", text), diagnostics);
     nc::Interpretation moves = nc::interpret(program, options, diagnostics);
@@ -448,6 +471,52 @@ TEST_F(PostureInATrough, OneDirectionIsTheSameHoweverItIsWritten) {
   }
 }
 
+TEST_F(PostureInATrough, IsTheSameInEveryLanguage) {
+  constexpr double kSamePlace_mm = 1e-6, kSameDirection = 1e-9;
+  using enum nc::OneDirection;
+  for (const bool indexed : {false, true})
+    for (const nc::OneDirection written : {tip, tilted}) {
+      if (!indexed && written == tilted) continue;
+      std::vector<std::vector<ToolPose>> all;
+      for (const char* control : {"fanuc", "heidenhain", "siemens"}) {
+        SCOPED_TRACE(fmt::format("{} {}", control, static_cast<int>(written)));
+        speak(control);
+        read(control == std::string("fanuc") ? rows(mesh_) : rows_in(control, mesh_));
+        Diagnostics diagnostics;
+        PostureRequest request{.job = &job_, .program = &program_, .moves = &moves_, .tool = 1, .options = {}};
+        request.options.indexed = indexed;
+        request.written = written;
+        const std::vector<Postured> made = make_postures(request, diagnostics);
+        diagnostics.throw_if_errors();
+        ASSERT_FALSE(made.at(0).blocked_move);
+        const std::string& text = made[0].text;
+        const std::string on = written == tilted ? "\nCYCLE800(0,\"\",100000,57,0,0,0," : "\nTRAORI\n";
+        EXPECT_EQ(text.find(on) != std::string::npos, control == std::string("siemens")) << text.substr(0, 600);
+        EXPECT_EQ(text.find(written == tilted ? " PLANE SPATIAL SPA" : " M128\n") != std::string::npos,
+                  control == std::string("heidenhain"))
+            << text.substr(0, 600);
+        all.push_back(cut_ends(text));
+        // As it was chosen.
+        std::size_t contact = 0;
+        for (std::size_t i = 0; i < made[0].points.size(); ++i) contact += !made[0].points[i].rapid;
+        ASSERT_EQ(all.back().size(), contact);
+        if (indexed) {
+          for (const ToolPose& pose : all.back())
+            EXPECT_LT((pose.axis - made[0].axes.front()).norm(), written == tilted ? kSameDirection : 3e-6);
+        }
+      }
+      ASSERT_GT(all[0].size(), 80U);
+      for (std::size_t k = 1; k < all.size(); ++k) {
+        ASSERT_EQ(all[k].size(), all[0].size());
+        for (std::size_t i = 0; i < all[0].size(); ++i) {
+          // The angles of a tilted plane differ from language to language, and so does what rounds them.
+          EXPECT_LT((all[k][i].tip_mm - all[0][i].tip_mm).norm(), written == tilted ? 2e-4 : kSamePlace_mm) << k;
+          EXPECT_LT((all[k][i].axis - all[0][i].axis).norm(), written == tilted ? 3e-6 : kSameDirection) << k;
+        }
+      }
+    }
+}
+
 TEST_F(PostureInATrough, SaysWhichFramesItCannotWrite) {
   using enum nc::OneDirection;
   read(rows(mesh_));
@@ -456,6 +525,13 @@ TEST_F(PostureInATrough, SaysWhichFramesItCannotWrite) {
   EXPECT_EQ(said(job_, dynamic), "job.toml: error: LinuxCNC has no dynamic work offset (G254)" + end);
   speak("fanuc");
   EXPECT_EQ(said(job_, dynamic), "job.toml: error: Fanuc has no dynamic work offset (G254); tilted, " + end.substr(2));
+  for (const auto& [control, title] : {std::pair("heidenhain", "Heidenhain"), std::pair("siemens", "Siemens")}) {
+    speak(control);
+    read(rows_in(control, mesh_));
+    EXPECT_EQ(said(job_, dynamic),
+              fmt::format("job.toml: error: {} has no dynamic work offset (G254); tilted, {}", title, end.substr(2)));
+  }
+  read(rows(mesh_));
   Diagnostics diagnostics;
   job_.machine = machine::read_machine(CAMBER_SOURCE_DIR "/samples/kinematics/head_table.toml", diagnostics);
   speak("haas");

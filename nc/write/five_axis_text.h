@@ -1,0 +1,140 @@
+#pragma once
+// How a language writes programs with rotary axes: tool-centre-point control, a frame for one direction of the tool,
+// blocks that become one or several lines. repath/post.h decides what is written, and posture/; a language says how.
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "base/geometry.h"
+#include "nc/emit/number_style.h"
+#include "nc/emit/text_rules.h"
+#include "nc/move.h"
+#include "nc/program.h"
+#include "nc/write/block_edit.h"
+
+namespace camber::nc {
+
+/// A frame for blocks at one direction of the tool.
+struct FrameLines {
+  std::vector<std::string> before, behind;  ///< lines that switch it on and off
+  Eigen::Matrix3d work_from_frame = Eigen::Matrix3d::Identity();  ///< that of the angles as they are written
+};
+
+/// Words of a line that a block gets in addition.
+struct LineWords {
+  bool rapid = false;
+  bool in_force = false;  ///< the motion (rapid or line) is that of the block before
+  std::vector<std::string> places;
+  std::string feed;                 ///< with its address; empty: none
+  std::vector<std::string> at_end;  ///< words that act at the end of the motion
+};
+
+class FiveAxisText {
+ public:
+  FiveAxisText(const Program& program, const Dialect& dialect);
+  virtual ~FiveAxisText() = default;
+
+  const TextRules& rules() const { return *rules_; }
+  const NumberStyle& style() const { return style_; }
+  const NumberStyle& feed_style() const { return feed_style_; }
+
+  // Tool-centre-point control
+  /// The words that switch it on, for messages: "M128 or FUNCTION TCPM".
+  virtual std::string_view control_words() const = 0;
+  /// Follows the modal words of the given text: each block once, in order.
+  virtual void pass(std::uint32_t) {}
+  /// Lines in front of a block.
+  virtual std::vector<std::string> control_on(std::uint32_t block) const = 0;
+  virtual std::vector<std::string> control_off() const = 0;
+  /// Takes words out that would switch it off in the middle of rewritten blocks.
+  virtual void keep_control(BlockEdit&) const {}
+  /// Takes it out of the text.
+  virtual void take_out_control(BlockEdit&) const = 0;
+  /// Why the joints of this move under tool-centre-point control have no words; empty: they have.
+  virtual std::string joints_refused(const Interpretation&, const Move&) const { return {}; }
+
+  // Blocks
+  virtual BlockEdit edit_of(std::uint32_t block) const { return {program_, block}; }
+  /// The number of this word may be changed as it stands; else it becomes a new word: X=IC(5), C=DC(90), IX+5.
+  virtual bool keeps_form(const Word&) const { return true; }
+  virtual void take_out(BlockEdit& edit, const Word& word) const { edit.take_out(word); }
+  /// Takes out the words of an arc, or of the tool's direction.
+  virtual void take_out_curve(BlockEdit& edit, bool arc, bool direction) const = 0;
+  /// The block becomes a line or a rapid.
+  virtual void make_line(BlockEdit& edit, bool rapid, bool in_force) const = 0;
+  /// Feeds that F takes the place of. True: there were some.
+  virtual bool take_out_other_feeds(BlockEdit&) const { return false; }
+  /// A further line beside a block.
+  virtual std::string further_line(const BlockEdit& like, const LineWords& words) const;
+  /// A line of its own.
+  virtual std::string rapid_line(const std::vector<std::string>& words) const = 0;
+  /// Where the linear axes stand already, behind rewritten blocks. `steps`: coordinates count by increments here.
+  virtual std::vector<std::string> place_lines(const std::vector<std::string>& words, bool rapid, bool steps) const = 0;
+
+  // Feed
+  /// Why feeds cannot be written in this mode; empty: they can.
+  virtual std::string feed_refused(FeedMode) const { return {}; }
+  /// The mode that a block of the given text switches on.
+  virtual std::optional<FeedMode> feed_mode_of(std::uint32_t block) const = 0;
+  /// The block's own word of a mode gets this one; false: it has none.
+  virtual bool set_feed_mode(BlockEdit& edit, FeedMode mode) const = 0;
+  /// A line that switches the mode, sets F, or both.
+  virtual std::string feed_line(std::optional<FeedMode> mode, const std::string& feed) const = 0;
+
+  // One direction of the tool
+  /// A frame with Z along `axis` and X as near to that of the program as it gets. `negative`: the first rotary axis
+  /// turns to a negative angle.
+  virtual FrameLines tilted_frame(const Vec3& axis, int decimals, bool negative) const = 0;
+  /// Lines of the dynamic work offset, on and off.
+  virtual FrameLines dynamic_frame() const { return {}; }
+
+  /// "A12.5".
+  std::string word(char letter, double value, int decimals) const {
+    return letter + format_number(value, decimals, style_);
+  }
+
+ protected:
+  /// What the line begins and ends with, beside its places.
+  virtual void add_motion(const LineWords& words, std::vector<std::string>& out) const = 0;
+
+  const Program& program_;
+  const Dialect& dialect_;
+  std::unique_ptr<TextRules> rules_;
+  NumberStyle style_, feed_style_;
+};
+
+/// Texts with codes: G0 to G3 hold until the next, G93 to G95 say what F means.
+class FiveAxisCodes : public FiveAxisText {
+ public:
+  using FiveAxisText::FiveAxisText;
+
+  void make_line(BlockEdit& edit, bool rapid, bool in_force) const override;
+  std::string rapid_line(const std::vector<std::string>& words) const override;
+  std::vector<std::string> place_lines(const std::vector<std::string>& words, bool rapid, bool steps) const override;
+  std::optional<FeedMode> feed_mode_of(std::uint32_t block) const override;
+  bool set_feed_mode(BlockEdit& edit, FeedMode mode) const override;
+  std::string feed_line(std::optional<FeedMode> mode, const std::string& feed) const override;
+
+ protected:
+  void add_motion(const LineWords& words, std::vector<std::string>& out) const override;
+};
+
+/// Euler angles about Z, the new X and the new Z, rad, of a frame with Z along `axis` and X as near to that of the
+/// program as it gets.
+Vec3 leaning_frame(const Vec3& axis);
+/// `angles_rad` as they are read from words with so many decimals of a degree.
+Vec3 rounded_angles(const Vec3& angles_rad, int decimals);
+
+/// The control's dialect where it has the language of the program; else one of that language.
+const Dialect& dialect_of_text(const Program& program, const Dialect& control);
+
+/// In the language of the program.
+std::unique_ptr<FiveAxisText> five_axis_text(const Program& program, const Dialect& control);
+std::unique_ptr<FiveAxisText> iso_five_axis_text(const Program& program, const Dialect& dialect);
+
+}  // namespace camber::nc
