@@ -70,13 +70,35 @@ namespace {
 
 constexpr double kHidden_mm = 0.0005;  // above the surface: the owner did not cut there
 
+/// The tool at a place of a path.
+struct ToolAt {
+  Vec3 tip_mm, axis;
+  const machine::Tool* tool = nullptr;  ///< null: not one of the job's
+};
+
+ToolAt tool_at(const ShiftPath::PointInterval& place, const ShiftPath& path, const machine::Job& job,
+               const simulate::SimulatedProgram& given) {
+  const ControlPoint &from = path.points()[place.lower], &to = path.points()[place.lower + 1];
+  const auto tool = job.tools.find(given.moves_in_part().state_of(given.moves_in_part().moves[to.move]).tool);
+  const double from_fraction = from.move == to.move ? from.fraction : 0;
+  return {from.place_mm + place.upper_fraction * (to.place_mm - from.place_mm),
+          given.pose_at(to.move, from_fraction + place.upper_fraction * (to.fraction - from_fraction)).axis,
+          tool == job.tools.end() ? nullptr : &tool->second};
+}
+
 /// Surface points as places of one path.
 class Places {
  public:
-  Places(const ShiftPath& path, const simulate::SimulatedProgram& given, const simulate::SimulatedProgram& emitted,
-         const nc::MoveMap& map, std::span<const simulate::PathFraction> own_target,
-         const std::vector<bool>& first_cuts)
-      : path_(path), given_(given), emitted_(emitted), map_(map), own_target_(own_target), first_cuts_(first_cuts) {}
+  Places(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
+         const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
+         std::span<const simulate::PathFraction> own_target, const std::vector<bool>& first_cuts)
+      : path_(path),
+        job_(job),
+        given_(given),
+        emitted_(emitted),
+        map_(map),
+        own_target_(own_target),
+        first_cuts_(first_cuts) {}
 
   /// Returns nothing where the point's stamp belongs to no move that may be shifted.
   std::optional<ShiftPath::PointInterval> machined(const removal::SurfacePoint& p) const {
@@ -87,7 +109,25 @@ class Places {
   std::optional<ShiftPath::PointInterval> owner(const removal::SurfacePoint& p) const {
     if (p.target_stamp < 0 || static_cast<std::size_t>(p.target_stamp) >= own_target_.size()) return std::nullopt;
     const auto& stamp = own_target_[static_cast<std::size_t>(p.target_stamp)];
-    return find({stamp.move, static_cast<double>(stamp.fraction)});
+    const auto place = find({stamp.move, static_cast<double>(stamp.fraction)});
+    return place && flutes_reach(*place, p) ? place : std::nullopt;
+  }
+  /// Where a first cut was the last to cut: the place of its run that cuts again there, or should.
+  std::optional<ShiftPath::PointInterval> recut(const removal::SurfacePoint& p) const {
+    if (was_cut(p) || p.machined_stamp < 0) return std::nullopt;
+    const auto& stamp = emitted_.path.stamps[static_cast<std::size_t>(p.machined_stamp)];
+    std::uint32_t move = map_.given(stamp.move, stamp.fraction).move;
+    while (move < first_cuts_.size() && !path_.contains(move)) ++move;
+    if (move >= first_cuts_.size()) return std::nullopt;
+    const std::size_t start = path_.find(move, 0).lower;
+    const auto chain = std::ranges::find_if(
+        path_.chains(), [&](const Chain& c) { return start >= c.from && start < c.from + c.count; });
+    const auto& points = path_.points();
+    std::size_t nearest = chain->from;
+    for (std::size_t i = chain->from; i + 1 < chain->from + chain->count; ++i)
+      if ((points[i].place_mm - stamp.pose.tip_mm).norm() < (points[nearest].place_mm - stamp.pose.tip_mm).norm())
+        nearest = i;
+    return ShiftPath::PointInterval{nearest, 0};
   }
   bool was_cut(const removal::SurfacePoint& p) const {
     if (p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= emitted_.path.stamps.size()) return false;
@@ -97,12 +137,19 @@ class Places {
   }
 
  private:
+  /// The nominal sweep is that of a cutter which is fluted all the way: a row far below passes on the same surface.
+  bool flutes_reach(const ShiftPath::PointInterval& place, const removal::SurfacePoint& p) const {
+    const ToolAt at = tool_at(place, path_, job_, given_);
+    return !at.tool || !at.tool->flute_length_mm ||
+           (p.place_mm - at.tip_mm).dot(at.axis) <= *at.tool->flute_length_mm;
+  }
   std::optional<ShiftPath::PointInterval> find(const nc::MoveMap::MovePlace& at) const {
     if (!path_.contains(at.move) || !given_.moves_in_part().moves[at.move].editable) return std::nullopt;
     return path_.find(at.move, at.fraction);
   }
 
   const ShiftPath& path_;
+  const machine::Job& job_;
   const simulate::SimulatedProgram &given_, &emitted_;
   const nc::MoveMap& map_;
   std::span<const simulate::PathFraction> own_target_;
@@ -111,30 +158,26 @@ class Places {
 
 }  // namespace
 
-std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const simulate::Setup& given,
-                                                    const removal::SurfacePoint& point) {
+std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const machine::Job& job,
+                                                    const simulate::Setup& given, const removal::SurfacePoint& point) {
   const nc::MoveMap same;
-  return Places(path, given.program, given.program, same, given.own_stamps(), {}).owner(point);
+  return Places(path, job, given.program, given.program, same, given.own_stamps(), {}).owner(point);
 }
 
 void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPath::PointInterval& place,
                const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given) {
   o.place = place;
-  const ControlPoint &from = path.points()[place.lower], &to = path.points()[place.lower + 1];
-  const auto tool = job.tools.find(given.moves_in_part().state_of(given.moves_in_part().moves[to.move]).tool);
-  const Vec3 tip = from.place_mm + place.upper_fraction * (to.place_mm - from.place_mm);
-  const double corner_mm = tool != job.tools.end() ? removal::shape_of(tool->second).corner_radius_mm : 0;
-  const double from_fraction = from.move == to.move ? from.fraction : 0;
-  const Vec3 axis = given.pose_at(to.move, from_fraction + place.upper_fraction * (to.fraction - from_fraction)).axis;
-  o.from_centre_mm = point.place_mm - tip - corner_mm * axis;
-  o.at_tip = tool != job.tools.end() && round_tip(tool->second) && o.normal.dot(axis) > kTipNormal;
+  const ToolAt at = tool_at(place, path, job, given);
+  const double corner_mm = at.tool ? removal::shape_of(*at.tool).corner_radius_mm : 0;
+  o.from_centre_mm = point.place_mm - at.tip_mm - corner_mm * at.axis;
+  o.at_tip = at.tool && round_tip(*at.tool) && o.normal.dot(at.axis) > kTipNormal;
 }
 
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,
                  std::span<const Vec3> bending, const std::vector<bool>& first_cuts) {
-  const Places places(path, given, emitted, map, own_target, first_cuts);
+  const Places places(path, job, given, emitted, map, own_target, first_cuts);
   const Rows rows(path);
   Observed out;
   out.points.resize(surface.size());
@@ -147,7 +190,8 @@ Observed observe(const ShiftPath& path, const machine::Job& job, const simulate:
     if (!p.valid) continue;  // no weight in any fit
     o.error_mm = judged_mm(p, job.compensation.reference);
     o.area_mm2 = p.area_mm2;
-    const auto machined = places.machined(p), owner = places.owner(p);
+    const auto owner = places.owner(p);
+    const auto cut = places.machined(p), machined = cut || owner ? cut : places.recut(p);
     o.foreign = owner && machined && rows.differ(*owner, *machined);
     const bool owned = owner && (!places.was_cut(p) || (o.foreign && o.error_mm > 0));
     if (!owned && !machined) continue;

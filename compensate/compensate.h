@@ -61,7 +61,7 @@ struct Round {
   bool guard = false;                 ///< a round of the guard against gouging
   double machine_time_s = 0;
   std::size_t slowed = 0;    ///< changes of feed: stretches of the path with a feed of their own, and their ends
-  std::size_t repeated = 0;  ///< runs of cuts between rapids that are cut twice
+  std::size_t repeated = 0;  ///< cuts that are added: runs of cuts between rapids once more, or several times
   int static_rounds = 0;
   std::size_t unsettled = 0;
 };
@@ -72,9 +72,10 @@ struct TimePoint {
   std::size_t round = 0;       ///< index into CompensationResult::rounds
 };
 
-/// Lines of the given program that are cut twice.
+/// Lines of the given program that are cut twice or more.
 struct RepeatedRun {
   std::size_t first_line = 0, last_line = 0;
+  int cuts = 2;
 };
 
 /// What is expected before the rounds start.
@@ -114,6 +115,13 @@ struct WrittenProgram {
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
 };
 
+/// What a lever that was not used is expected to bring.
+struct LeverOutlook {
+  machine::Lever lever = machine::Lever::passes;
+  double p95_um = 0;   ///< judged error that is expected to remain
+  double extra_s = 0;  ///< of machine time
+};
+
 /// Whether the emitted program is good, and what keeps it from being better.
 struct CompensationVerdict {
   bool better = true;  ///< the round is better than the given program, or that is good, and within limits
@@ -121,15 +129,16 @@ struct CompensationVerdict {
   bool settled = true;  ///< every static solution of the first and the best round did
   Stop stop = Stop::rounds;
   std::vector<CauseFigure> causes;   ///< causes of the remaining error, where it is over the tolerance
+  std::vector<LeverOutlook> unused;  ///< levers that would bring more, where it is over the tolerance
   std::vector<BindingLimit> limits;  ///< limits that kept the path from the shifts that its error asks for
   /// Reasons why the figures of the given or the emitted program are not reliable (simulate/verdict.h); empty: none.
   std::vector<std::string> doubts;
 };
 
-/// Runs of the emitted program that are cut twice.
+/// Runs of the emitted program that are cut twice or more.
 struct SecondCuts {
   std::vector<RepeatedRun> runs{};
-  double allowance_mm = 0;  ///< left by the first of two cuts; 0: no run is repeated
+  double allowance_mm = 0;  ///< left by the cuts before the last one; 0: no run is repeated
   std::string text{};       ///< the program whose path was shifted, where runs are cut twice; else empty
 };
 

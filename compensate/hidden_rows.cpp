@@ -114,7 +114,7 @@ std::vector<Observation> expected_errors(const ShiftPath& path, const machine::J
   const std::vector<Vec3> offsets = path_offsets(path, given.program, given.program, {});
   std::vector<Observation> out;
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const auto owner = owner_place(path, given, surface[i]);
+    const auto owner = owner_place(path, job, given, surface[i]);
     if (!owner) continue;
     Observation o = observed.points[i];
     set_place(o, surface[i], *owner, path, job, given.program);

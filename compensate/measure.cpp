@@ -113,7 +113,8 @@ std::vector<double> bounds_of_bow(const Task& task, const Version& version, cons
 
 /// Observation::bound_mm: no place may become worse than given. Where that would raise the 95th percentile by more than
 /// a quarter, as where the cutter's bow leaves both signs at every place of the path, a place may reach what no shift
-/// of its own could remove. Sets the bounds of `given`, too.
+/// of its own could remove. Where the part yields, that is so wherever the 95th percentile falls by it: at the top of
+/// each level the part does not give way, and so nothing is wrong there. Sets the bounds of `given`, too.
 std::vector<double> choose_bounds(const Task& task, Version& version, Trial& given) {
   const std::size_t count = given.observed.points.size();
   const auto p95_within = [&](const std::vector<double>& bound_mm) {
@@ -125,7 +126,8 @@ std::vector<double> choose_bounds(const Task& task, Version& version, Trial& giv
   std::vector<double> bound_mm;
   for (const Observation& o : given.observed.points)
     bound_mm.push_back(std::max(not_worse_mm(o.error_mm, task.tolerance_mm()) - kBoundRoom_mm, kBoundRoom_mm));
-  if (p95_within(bound_mm) <= std::max((1 + kBoundCost) * free_um, 1000 * task.tolerance_mm())) return bound_mm;
+  const double cost = task.job.workpiece ? 0 : kBoundCost;
+  if (p95_within(bound_mm) <= std::max((1 + cost) * free_um, 1000 * task.tolerance_mm())) return bound_mm;
   const std::vector<double> bow = bounds_of_bow(task, version, given);
   for (std::size_t i = 0; i < count; ++i) bound_mm[i] = std::max(bound_mm[i], bow[i]);
   given.observed.set_bounds(bound_mm);
@@ -175,7 +177,8 @@ std::vector<Observation> observe_given(const Task& task, Version& version, Trial
   given.observed = observe(version.source, version.path, nullptr, given.surface);
   given.observed.reach = reach_of(version.path, task.setup->program.moves_in_part(), given.observed, given.surface,
                                   task.setup->own_stamps());
-  if (foreign_fraction(given.observed) > kForeign) return expect_hidden_rows(task, version, given);
+  // Rows cut each other's surface where a part has sprung back, and what is seen of them is right.
+  if (!task.job.workpiece && foreign_fraction(given.observed) > kForeign) return expect_hidden_rows(task, version, given);
   return {};
 }
 

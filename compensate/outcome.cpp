@@ -9,6 +9,7 @@
 
 #include "compensate/fit_shift.h"
 #include "compensate/judge.h"
+#include "compensate/lever_outlook.h"
 #include "compensate/pass_before.h"
 #include "compensate/propose.h"
 #include "simulate/verdict.h"
@@ -120,8 +121,13 @@ SecondCuts second_cuts(const Task& task, const State& state) {
   for (const nc::CutRun& run : nc::cut_runs(given.text(), given.moves_in_part(), state.versions.front()->compensated))
     if (run.why_not == nc::RunGap::none) able.push_back(run);
   SecondCuts out{.allowance_mm = version.repeated->allowance_mm, .text = version.repeated->text.text};
-  for (const std::size_t r : version.repeated->runs)
-    out.runs.push_back({std::size_t{able[r].first_block} + 1, std::size_t{able[r].last_block} + 1});
+  for (const std::size_t r : version.repeated->runs) {
+    const std::size_t first_line = std::size_t{able[r].first_block} + 1;
+    if (!out.runs.empty() && out.runs.back().first_line == first_line)
+      ++out.runs.back().cuts;
+    else
+      out.runs.push_back({first_line, std::size_t{able[r].last_block} + 1});
+  }
   return out;
 }
 
@@ -287,7 +293,10 @@ void conclude(const Task& task, State& state, bool better, CompensationResult& o
   verdict.within_tolerance = within_tolerance(figures.plain_after, task.job.compensation);
   verdict.stop = stop_of(state, out);
   verdict.limits = binding_limits(task, state);
-  if (!verdict.within_tolerance) verdict.causes = causes(task, state, out);
+  if (!verdict.within_tolerance) {
+    verdict.causes = causes(task, state, out);
+    verdict.unused = unused_levers(task, state);
+  }
   if (task.options.max_stock_crossings > 0)
     out.surfaces.stock = removal::stock_shape(task.setup->target.surface, task.options.max_stock_crossings);
   check_emitted_travel(version.source.job, program, task.diagnostics);

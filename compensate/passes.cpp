@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
+#include <queue>
 #include <utility>
 
 #include <fmt/format.h>
@@ -95,17 +96,43 @@ std::vector<PassRun> pass_runs(const simulate::SimulatedProgram& given, const st
   return out;
 }
 
-std::vector<std::size_t> choose_passes(std::span<const PassRun> runs, double budget_s, double wanted_mm) {
-  std::vector<std::size_t> order(runs.size()), out;
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return runs[a].left_mm > runs[b].left_mm; });
+std::vector<std::size_t> choose_passes(std::span<const PassRun> runs, double budget_s, double wanted_mm, int most) {
+  struct Next {
+    double left_mm;
+    std::size_t run;
+    int cuts;  ///< that are chosen
+    bool operator<(const Next& other) const {
+      return left_mm != other.left_mm ? left_mm < other.left_mm : run > other.run;
+    }
+  };
+  std::priority_queue<Next> queue;
+  for (std::size_t r = 0; r < runs.size(); ++r) queue.push({runs[r].left_mm, r, 0});
+  std::vector<std::size_t> out;
   double time = 0;
-  for (const std::size_t r : order) {
-    if (runs[r].left_mm <= wanted_mm || time + runs[r].time_s > budget_s) continue;
-    time += runs[r].time_s;
-    out.push_back(r);
+  while (!queue.empty() && queue.top().left_mm > wanted_mm) {
+    const Next next = queue.top();
+    queue.pop();
+    if (time + runs[next.run].time_s > budget_s) continue;
+    time += runs[next.run].time_s;
+    out.push_back(next.run);
+    if (next.cuts + 1 < most) queue.push({kLeftByCut * next.left_mm, next.run, next.cuts + 1});
   }
   std::ranges::sort(out);
+  return out;
+}
+
+std::vector<double> left_after_passes_mm(std::span<const PassRun> runs, std::span<const std::size_t> chosen,
+                                         const ShiftPath& path, std::span<const Observation> observations,
+                                         std::span<const double> left_mm) {
+  std::map<std::uint32_t, double> left_of_move;  // of what is left now
+  for (const std::size_t r : chosen)
+    for (std::uint32_t m = runs[r].run.first_move; m <= runs[r].run.last_move; ++m)
+      left_of_move.try_emplace(m, 1.0).first->second *= kLeftByCut;
+  std::vector<double> out(left_mm.begin(), left_mm.end());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto left = left_of_move.find(path.points()[observations[i].place.lower + 1].move);
+    if (left != left_of_move.end()) out[i] *= left->second;
+  }
   return out;
 }
 
@@ -118,8 +145,12 @@ nc::RepeatedText with_first_cuts(const simulate::SimulatedProgram& given, std::s
   const SourceText text("", first_cuts.text);
   std::vector<nc::EarlierCut> cuts;
   std::size_t line = 0;
-  for (const std::size_t r : chosen) {
-    nc::EarlierCut cut{.run = runs[r].run};
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    if (i > 0 && chosen[i] == chosen[i - 1]) {
+      cuts.push_back(cuts.back());
+      continue;
+    }
+    nc::EarlierCut cut{.run = runs[chosen[i]].run};
     for (; line < first_cuts.block_of_line.size(); ++line) {
       const std::uint32_t block = first_cuts.block_of_line[line];
       if (block == nc::Emission::kNoBlock || block < cut.run.first_block) continue;

@@ -1,5 +1,6 @@
 #pragma once
-// Cutting a run of moves twice as a third lever: the first cut leaves an allowance, the second one takes a thin chip.
+// Cutting a run of moves twice or more as a third lever: the cuts before the last leave an allowance, the last one
+// takes a thin chip.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -29,16 +30,30 @@ std::vector<PassRun> pass_runs(const simulate::SimulatedProgram& given, const st
                                const ShiftPath& path, std::span<const Observation> observations,
                                std::span<const double> left_mm);
 
-/// Returns the indices of the runs to cut twice, ascending: those with the greatest error first, each while it fits
-/// into `budget_s` and leaves more than `wanted_mm`.
-std::vector<std::size_t> choose_passes(std::span<const PassRun> runs, double budget_s, double wanted_mm);
+/// What one more cut is expected to leave of the error that no shift removes. The edges of a thinner chip are in the cut
+/// over a shorter way, so that a part that yields springs back by less than the chip falls: on samples/22-thin-wall a
+/// second cut leaves 0.2 to 0.4 of it.
+inline constexpr double kLeftByCut = 0.35;
+
+/// How often a run may be cut before its last cut: a rigid part is right after the second one.
+inline int most_passes(const machine::Job& job) { return job.workpiece ? 3 : 1; }
+
+/// Returns the indices of the runs to cut again, ascending, each as often as it is cut before its last cut, at most
+/// `most` times: that with the greatest error first, while it fits into `budget_s` and leaves more than `wanted_mm`.
+std::vector<std::size_t> choose_passes(std::span<const PassRun> runs, double budget_s, double wanted_mm, int most = 1);
+
+/// What is expected to be left of each observation once the chosen runs are cut again.
+std::vector<double> left_after_passes_mm(std::span<const PassRun> runs, std::span<const std::size_t> chosen,
+                                         const ShiftPath& path, std::span<const Observation> observations,
+                                         std::span<const double> left_mm);
 
 /// Returns the allowance of the first of two cuts, mm, where the job gives none: the depth by which the best single cut
 /// undercuts the surface and half of its tolerance on top, so that the second one cuts everywhere; at least 20 um, a
 /// chip that an edge cuts rather than rubs.
 double pass_allowance_mm(double gouge_depth_mm, double tolerance_mm);
 
-/// The given program with the chosen runs' lines of `first_cuts` (an emission of the given program) before them.
+/// The given program with the chosen runs' lines of `first_cuts` (an emission of the given program) before them, as
+/// often as a run is chosen.
 nc::RepeatedText with_first_cuts(const simulate::SimulatedProgram& given, std::span<const PassRun> runs,
                                  std::span<const std::size_t> chosen, const nc::Emission& first_cuts);
 

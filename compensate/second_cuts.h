@@ -1,5 +1,5 @@
 #pragma once
-// Versions of the program in which runs are cut twice.
+// Versions of the program in which runs are cut twice or more.
 #include <memory>
 #include <vector>
 
@@ -17,11 +17,11 @@ std::unique_ptr<Version> taken_over(const Task& task, const Version& given, cons
                                     simulate::SimulatedProgram program, EarlierCuts repeated);
 
 struct SecondCutVersion {
-  std::unique_ptr<Version> version{};  ///< null: none of the runs can be cut twice
+  std::unique_ptr<Version> version{};  ///< null: none of the runs can be cut again
   bool too_slow = false;               ///< runs were left out for want of time
 };
 
-/// The given program with the chosen runs cut twice, within `allowed_s` of machine time. The path of `given` has the
+/// The given program with the chosen runs cut again, as often as they are chosen, within `allowed_s` of machine time. The path of `given` has the
 /// shifts of the first cuts afterwards.
 SecondCutVersion version_with(const Task& task, Version& given, const std::vector<PassRun>& runs,
                               std::vector<std::size_t> chosen, double allowed_s);

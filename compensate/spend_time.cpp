@@ -113,6 +113,7 @@ void lower_feeds(const Task& task, State& state, double percent) {
 void measure_version(const Task& task, State& state) {
   auto made = std::make_shared<Trial>();
   measure(task, *state.active, *made, fmt::format("round {}", state.rounds.size()));
+  state.active->source.part_yields = made->part_yields;
   state.last = made;
   state.first_round = state.rounds.size();
   record(task, state, {});
@@ -161,8 +162,9 @@ bool cut_twice(const Task& task, State& state, double percent) {
   Version& given = *state.versions.front();
   const std::vector<PassRun> runs = runs_after_shifts(task, given);
   const double budget_s = percent / 100 * task.given.time_s;
-  const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm(task));
-  const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm(task)).size();
+  const int most = most_passes(task.job);
+  const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm(task), most);
+  const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm(task), most).size();
   const auto tried = [&] {
     return std::ranges::any_of(state.versions, [&](const auto& v) { return v->passes() == chosen; });
   };

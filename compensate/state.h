@@ -62,7 +62,7 @@ struct Task {
 
 /// What a version cuts before the moves to compensate: runs of them once more, or the passes before on another path.
 struct EarlierCuts {
-  std::vector<std::size_t> runs{};     ///< cut twice: indices of pass_runs
+  std::vector<std::size_t> runs{};     ///< cut again: indices of pass_runs, each as often as it is cut before
   nc::RepeatedText text;               ///< of the given program with runs repeated
   std::vector<std::uint32_t> moves{};  ///< this version's, one per move of the given program
   double allowance_mm = 0;             ///< left by first cuts, or by the passes before
@@ -89,7 +89,7 @@ struct Version {
   bool feeds_stuck = false;                     ///< a lower feed brought nothing
   std::shared_ptr<const Trial> best_shifted{};  ///< best of the rounds without lower feeds
 
-  /// Runs that are cut twice.
+  /// Runs that are cut again, see EarlierCuts.
   std::vector<std::size_t> passes() const { return repeated ? repeated->runs : std::vector<std::size_t>(); }
 };
 

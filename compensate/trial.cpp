@@ -14,6 +14,7 @@ void Trial::keep(simulate::Prediction prediction) {
   all_valid = prediction.validity.all();
   chip_mm3 = prediction.cut.chip_mm3;
   stock_mm3 = prediction.cut.stock_mm3;
+  if (prediction.deflection_parts_um) part_yields = prediction.deflection_parts_um->survey;
 }
 
 ShiftedProgram given_program(const machine::Job& job, const std::shared_ptr<const simulate::Setup>& setup) {
@@ -56,6 +57,7 @@ simulate::Prediction predict(const ShiftedProgram& from, const Emitted* emitted,
                              const std::function<void(double)>& progress) {
   simulate::PredictOptions options;
   options.progress = progress;
+  options.part_yields = from.part_yields;
   return from.predictor(from.job, *from.target, emitted ? emitted->program : *from.program, options);
 }
 

@@ -36,6 +36,7 @@ struct Trial {
   std::size_t unsettled = 0;
   bool all_valid = true;               ///< the model holds everywhere (simulate/validity.h)
   double chip_mm3 = 0, stock_mm3 = 0;  ///< volume of the chips and volume lost by the stock
+  std::shared_ptr<const simulate::PartSurvey> part_yields;  ///< null: the part is rigid
   Observed observed;
 
   void keep(simulate::Prediction prediction);
@@ -55,6 +56,8 @@ struct ShiftedProgram {
   nc::EmitOptions decimals{};
   std::vector<Vec3> bending{};     ///< nominal_bending, where rows are hidden; else empty
   std::vector<bool> first_cuts{};  ///< one per move: of a run that is cut again; empty: none
+  /// Kept between the rounds, whose shifts hardly change how the part yields; null: the target's, or not known yet.
+  std::shared_ptr<const simulate::PartSurvey> part_yields{};
 };
 
 /// The given program of a set-up, which is kept.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -136,9 +137,12 @@ Json time_points(const compensate::CompensationResult& c) {
 }
 
 Json passes_json(const compensate::CompensationResult& c) {
-  Json runs = Json::array();
-  for (const auto& run : c.passes.runs) runs.push_back({run.first_line, run.last_line});
-  return {{"runs", runs}, {"allowance_um", 1000 * c.passes.allowance_mm}};
+  Json runs = Json::array(), cuts = Json::array();
+  for (const auto& run : c.passes.runs) {
+    runs.push_back({run.first_line, run.last_line});
+    cuts.push_back(run.cuts);
+  }
+  return {{"runs", runs}, {"cuts", cuts}, {"allowance_um", 1000 * c.passes.allowance_mm}};
 }
 
 Json recheck(const compensate::Recheck& r) {
@@ -306,17 +310,33 @@ std::string rounds_text(const compensate::CompensationResult& c) {
   return out;
 }
 
-/// Lines that are cut twice; empty where none are.
-std::string passes_text(const compensate::CompensationResult& c) {
-  if (c.passes.runs.empty()) return {};
+/// "cut 3 times, the cuts before the last leaving 20 um: lines 8 to 8 of the given program"; empty where no run is cut
+/// `cuts` times.
+std::string passes_text(const compensate::CompensationResult& c, int cuts) {
   constexpr std::size_t kShown = 8;
-  std::string out = fmt::format("cut twice, the first cut leaving {:.0f} um: lines", 1000 * c.passes.allowance_mm);
-  for (std::size_t i = 0; i < std::min(kShown, c.passes.runs.size()); ++i)
-    fmt::format_to(std::back_inserter(out), "{} {} to {}", i > 0 ? "," : "", c.passes.runs[i].first_line,
-                   c.passes.runs[i].last_line);
-  if (c.passes.runs.size() > kShown)
-    fmt::format_to(std::back_inserter(out), " and {} more runs", c.passes.runs.size() - kShown);
-  return out + " of the given program\n";
+  std::string out;
+  std::size_t count = 0;
+  for (const compensate::RepeatedRun& run : c.passes.runs) {
+    if (run.cuts != cuts) continue;
+    if (++count > kShown) continue;
+    fmt::format_to(std::back_inserter(out), "{} {} to {}", count > 1 ? "," : "", run.first_line, run.last_line);
+  }
+  if (count == 0) return {};
+  if (count > kShown) fmt::format_to(std::back_inserter(out), " and {} more runs", count - kShown);
+  const double left_um = 1000 * c.passes.allowance_mm;
+  const std::string head = cuts == 2
+                               ? fmt::format("cut twice, the first cut leaving {:.0f} um: lines", left_um)
+                               : fmt::format("cut {} times, the cuts before the last leaving {:.0f} um: lines", cuts, left_um);
+  return head + out + " of the given program\n";
+}
+
+/// Lines that are cut more than once; empty where none are.
+std::string passes_text(const compensate::CompensationResult& c) {
+  std::set<int> counts;
+  for (const compensate::RepeatedRun& run : c.passes.runs) counts.insert(run.cuts);
+  std::string out;
+  for (const int cuts : counts) out += passes_text(c, cuts);
+  return out;
 }
 
 /// "levers used: shift to 43.2 um (120 blocks), 14 feed changes; +2.1 s (+1.9 %)".
@@ -325,7 +345,10 @@ std::string levers_text(const compensate::CompensationResult& c) {
   std::string out =
       fmt::format("levers used: shift to {:.1f} um ({} blocks)", 1000 * c.path.max_shift_mm, c.emitted.blocks_changed);
   if (best.slowed > 0) out += fmt::format(", {} feed changes", best.slowed);
-  if (best.repeated > 0) out += fmt::format(", {} runs cut twice", best.repeated);
+  if (best.repeated > 0 && best.repeated == c.passes.runs.size())
+    out += fmt::format(", {} runs cut twice", best.repeated);
+  else if (best.repeated > 0)
+    out += fmt::format(", {} cuts more of {} runs", best.repeated, c.passes.runs.size());
   if (c.pass_before)
     out += fmt::format(", the passes before leave {:.0f} instead of {:.0f} um", 1000 * c.pass_before->left_mm,
                        1000 * c.pass_before->given_mm);

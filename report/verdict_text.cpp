@@ -44,6 +44,12 @@ std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
       depth.line.given > 0 ? " in " + compensate::lines_text({depth.line}) : "", limit_um);
 }
 
+std::string unused_sentence(const compensate::LeverOutlook& o, double given_s) {
+  const char* of = o.lever == machine::Lever::passes ? "second cuts (lever \"passes\")" : "lower feeds (lever \"feed\")";
+  return fmt::format("{} are expected to leave {:.1f} um (95th percentile) for {:.1f} s more ({:+.0f} %)", of, o.p95_um,
+                     o.extra_s, given_s > 0 ? 100 * o.extra_s / given_s : 0);
+}
+
 std::vector<std::string> shortfalls(const CompensationResult& c, const CompensationSettings& asked) {
   std::vector<std::string> out = c.verdict.doubts;
   if (!c.verdict.settled) out.push_back(unsettled_sentence(c));
@@ -57,6 +63,7 @@ std::vector<std::string> shortfalls(const CompensationResult& c, const Compensat
     out.push_back(fmt::format("before the rounds, shifts alone were expected to leave {:.2f} um (95th percentile)",
                               c.figures.outlook.achievable_p95_um));
   for (const auto& cause : c.verdict.causes) out.push_back(compensate::sentence(cause));
+  for (const auto& lever : c.verdict.unused) out.push_back(unused_sentence(lever, c.figures.feed_before.time_s));
   return out;
 }
 

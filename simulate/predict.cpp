@@ -463,9 +463,13 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const motion::PathStr
 
 namespace {
 
-/// Returns the survey of the target's path, or one of the program's own where that takes other ways.
-std::shared_ptr<const PartSurvey> part_under(const Job& job, const Target& target, const SimulatedProgram& program) {
-  if (!target.part_yields || target.part_yields->fits(program.path)) return target.part_yields;
+/// Returns the survey that is known, or that of the target's path, or one of the program's own where that takes other
+/// ways.
+std::shared_ptr<const PartSurvey> part_under(const Job& job, const Target& target, const SimulatedProgram& program,
+                                             const std::shared_ptr<const PartSurvey>& known) {
+  if (!target.part_yields) return nullptr;
+  if (known && known->fits(program.path)) return known;
+  if (target.part_yields->fits(program.path)) return target.part_yields;
   PartSurveyOptions options;
   options.cell_mm = target.part_yields->cell_mm;
   return std::make_shared<const PartSurvey>(survey_part(job, target.blank, program.path, options));
@@ -505,7 +509,7 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
   if (options.surface_read) options.surface_read();
   removal::SurfaceMap map = options.take_map ? options.take_map() : *target.map;
   auto machined = std::make_unique<removal::Stock>(target.blank);
-  const std::shared_ptr<const PartSurvey> part_yields = part_under(job, target, program);
+  const std::shared_ptr<const PartSurvey> part_yields = part_under(job, target, program, options.part_yields);
   std::optional<removal::SurfaceMap> tool_surface;
   if (part_yields) tool_surface.emplace(map);
   PathLoads loads = cut_path(*machined, target.blank, job, program,

@@ -45,6 +45,14 @@ TEST(Passes, CutTwiceTheRunsOfTheGreatestErrorThatFit) {
   EXPECT_EQ(choose_passes(runs, 5, 0), Chosen{});
 }
 
+TEST(Passes, CutAgainWhatIsExpectedToBeLeftOver) {
+  const std::vector<PassRun> runs{{{}, 10, 0.030}, {{}, 10, 0.012}, {{}, 10, 0.004}};
+  using Chosen = std::vector<std::size_t>;
+  EXPECT_EQ(choose_passes(runs, 100, 0.005, 3), (Chosen{0, 0, 1})) << "30, 10.5 and then 3.7 um; 12 and then 4.2 um";
+  EXPECT_EQ(choose_passes(runs, 20, 0.005, 3), (Chosen{0, 1})) << "the worst one first";
+  EXPECT_EQ(choose_passes(runs, 100, 0, 2), (Chosen{0, 0, 1, 1, 2, 2}));
+}
+
 TEST(Passes, LeaveTheDepthOfTheSingleCutAndHalfATolerance) {
   EXPECT_DOUBLE_EQ(pass_allowance_mm(0.040, 0.010), 0.045);
   EXPECT_DOUBLE_EQ(pass_allowance_mm(0.002, 0.005), 0.020) << "an edge must cut";
@@ -88,6 +96,27 @@ TEST(Passes, TheGivenMovesStandInTheRepeatedProgramAsTheyWere) {
   EXPECT_EQ(moves->back(), twice.moves_in_part().moves.size() - 1);
   EXPECT_EQ(twice.moves_in_part().moves.size(), given.moves_in_part().moves.size() + 4) << "a cut and three rapids\n"
                                                                                         << text.text;
+}
+
+TEST(Passes, RunsStandAsOftenAsTheyAreChosen) {
+  const simulate::SimulatedProgram given = read(kRows);
+  const std::vector<bool> cuts = cuts_of(given);
+  const ShiftPath path(given.moves_in_part(), cuts, 3);
+  const auto found = pass_runs(given, cuts, path, {}, {});
+  const std::vector<std::size_t> chosen{1, 1, 2};
+  const nc::RepeatedText text =
+      with_first_cuts(given, found, chosen, nc::emit_edits(given.text(), given.moves_in_part(), {}, {}));
+  const simulate::SimulatedProgram again = read(text.text);
+  std::uint32_t wrong = 0;
+  EXPECT_TRUE(moves_in_repeated(given.moves_in_part(), again.moves_in_part(), text, wrong).has_value()) << text.text;
+  EXPECT_EQ(again.moves_in_part().moves.size(), given.moves_in_part().moves.size() + 3 * 4) << text.text;
+
+  std::vector<Observation> observations(3);
+  for (std::size_t i = 0; i < 3; ++i) observations[i].place = path.find(found[i].run.first_move, 0.5);
+  const std::vector<double> left = left_after_passes_mm(found, chosen, path, observations, std::vector{0.01, 0.01, 0.01});
+  EXPECT_DOUBLE_EQ(left[0], 0.01);
+  EXPECT_DOUBLE_EQ(left[1], 0.01 * kLeftByCut * kLeftByCut);
+  EXPECT_DOUBLE_EQ(left[2], 0.01 * kLeftByCut);
 }
 
 TEST(Passes, RunsThatLeaveAnotherModalStateBehindAreFound) {
