@@ -112,13 +112,14 @@ nc::Interpretation moves_of(const nc::Program& text, nc::InterpreterOptions opti
   Diagnostics of_first = diagnostics;
   nc::Interpretation first = nc::interpret(text, options, of_first);
   const bool asked = of_first.has_errors() && std::ranges::any_of(of_first.all(), [](const Diagnostic& d) {
-    return d.check == "radius-unknown" || d.check == "unknown-parameter";
-  });
+                       return d.check == "radius-unknown" || d.check == "unknown-parameter";
+                     });
   if (!asked) {
     diagnostics = std::move(of_first);
     return first;
   }
-  for (const nc::ModalState& state : first.states) nc::set_cutter_radius(options.tool_offsets, state.tool, kCutter_mm / 2);
+  for (const nc::ModalState& state : first.states)
+    nc::set_cutter_radius(options.tool_offsets, state.tool, kCutter_mm / 2);
   for (const nc::Event& e : first.events)
     if (e.kind == nc::EventKind::tool_change)
       nc::set_cutter_radius(options.tool_offsets, static_cast<int>(e.value), kCutter_mm / 2);
@@ -129,8 +130,7 @@ nc::Interpretation moves_of(const nc::Program& text, nc::InterpreterOptions opti
 /// a machine cannot read either is said of it, not that rotary axes are missing.
 ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, Diagnostics& diagnostics) {
   Diagnostics upright = diagnostics;
-  ReadForJob out{moves_of(text, interpreter_of(arguments.machine, arguments.interpreter), upright),
-                 arguments.machine};
+  ReadForJob out{moves_of(text, interpreter_of(arguments.machine, arguments.interpreter), upright), arguments.machine};
   const bool turns = std::ranges::any_of(upright.all(), wants_axes);
   if (turns && arguments.machine.empty())
     for (const char* preset : kFiveAxisPresets) {
@@ -163,8 +163,8 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const auto [moves, machine] = read_moves(arguments, text, diagnostics);
   if (moves.moves.empty() && !diagnostics.has_errors())
-    diagnostics.add(text.source.diagnostic(Severity::error, 0,
-                                           "the program has no moves; one that cuts was expected for a job", "no-moves"));
+    diagnostics.add(text.source.diagnostic(
+        Severity::error, 0, "the program has no moves; one that cuts was expected for a job", "no-moves"));
   const nc::Summary summary = nc::summarize(text, moves);
   const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
   settle(diagnostics, options);

@@ -114,9 +114,8 @@ void Klartext::define_cycle(const Statement& s) {
   }
   if (std::ranges::find(kMade, *number) == kMade.end()) {
     pass();
-    return error(
-        s.begin, "not-supported",
-        fmt::format("CYCL DEF {} is not supported; 200 to 209, 240, 241, 251 and 252 were expected", *number));
+    return error(s.begin, "not-supported",
+                 fmt::format("CYCL DEF {} is not supported; 200 to 209, 240, 241, 251 and 252 were expected", *number));
   }
   cycle_ = {};
   cycle_.number = *number;
@@ -825,12 +824,12 @@ void Klartext::mill_old_pocket() {
 struct Klartext::Pocket {
   bool round = false;
   Vec3 middle_mm = Vec3::Zero();
-  double angle_rad = 0;                  ///< of the first side
-  double half_mm[2] = {0, 0};            ///< ways of the cutter's centre from the middle to the finished walls
-  double corner_mm = 0;                  ///< radius of its way round the corners there
-  double cutter_mm = 0;                  ///< radius
-  double sideways_mm = 0;                ///< at most, from ring to ring
-  double sense = 1;                      ///< of the rings: 1 counter-clockwise
+  double angle_rad = 0;        ///< of the first side
+  double half_mm[2] = {0, 0};  ///< ways of the cutter's centre from the middle to the finished walls
+  double corner_mm = 0;        ///< radius of its way round the corners there
+  double cutter_mm = 0;        ///< radius
+  double sideways_mm = 0;      ///< at most, from ring to ring
+  double sense = 1;            ///< of the rings: 1 counter-clockwise
   double feed_mm_per_s = 0;
   double least_mm() const { return round ? half_mm[0] : std::min(half_mm[0], half_mm[1]); }
 };
@@ -856,7 +855,8 @@ void Klartext::mill_pocket_level(const Pocket& pocket, double height_mm, double 
   }
   const int rings = std::max(1, static_cast<int>(std::ceil(way / pocket.sideways_mm - 1e-9)));
   if (rings > kMaxPecks)
-    throw FormulaError(cycle_.offset, "cycle", "the pocket would take more than 100000 rings; a larger Q370 was expected");
+    throw FormulaError(cycle_.offset, "cycle",
+                       "the pocket would take more than 100000 rings; a larger Q370 was expected");
   for (int i = 1; i <= rings; ++i) {
     const double inside = from_mm - way * i / rings;
     const double x = pocket.half_mm[0] - inside, y = pocket.half_mm[1] - inside;
@@ -900,7 +900,8 @@ void Klartext::mill_pocket() {
   pocket.cutter_mm = *tool;
   const double side = q_if_set(368).value_or(0) * unit, floor = q_if_set(369).value_or(0) * unit;
   const double surface = q_if_set(203).value_or(0) * unit, bottom = surface + q(201) * unit;
-  const double clear = surface + std::abs(q(200)) * unit, high = std::max(clear, surface + q_if_set(204).value_or(0) * unit);
+  const double clear = surface + std::abs(q(200)) * unit,
+               high = std::max(clear, surface + q_if_set(204).value_or(0) * unit);
   const double step = std::abs(q(202)) * unit, plunge = feed_q(206);
   const int operation = static_cast<int>(q_if_set(215).value_or(0));
   const double overlap = q_if_set(370).value_or(1);

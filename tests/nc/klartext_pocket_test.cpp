@@ -15,8 +15,8 @@ namespace camber::nc {
 namespace {
 
 constexpr double kRadius_mm = 4;
-constexpr double kStep_mm = 0.5;        ///< between the points of a path
-constexpr double kReached_mm = 0.01;    ///< that points of a path lie apart costs so much
+constexpr double kStep_mm = 0.5;      ///< between the points of a path
+constexpr double kReached_mm = 0.01;  ///< that points of a path lie apart costs so much
 
 struct PocketCase {
   bool round = false;
@@ -27,7 +27,8 @@ struct PocketCase {
 
 std::string text_of(const PocketCase& p) {
   std::string out = fmt::format(
-      "BEGIN PGM A MM\nTOOL DEF 1 L+0 R+{}\nTOOL CALL 1 Z S3000\nL X+20 Y+30 Z+50 R0 FMAX M3\nCYCL DEF {} ~\nQ215={} ~\n",
+      "BEGIN PGM A MM\nTOOL DEF 1 L+0 R+{}\nTOOL CALL 1 Z S3000\nL X+20 Y+30 Z+50 R0 FMAX M3\nCYCL DEF {} ~\nQ215={} "
+      "~\n",
       kRadius_mm, p.round ? 252 : 251, p.operation);
   out += p.round ? fmt::format("Q223={} ~\n", p.length)
                  : fmt::format("Q218={} ~\nQ219={} ~\nQ220={} ~\nQ224={} ~\nQ367={} ~\n", p.length, p.width, p.corner,
@@ -120,8 +121,7 @@ TEST(KlartextPocket, CutsNoDeeperThanQ202AtOnce) {
   const Read r = read_clean(text_of(p));
   std::vector<double> heights;
   for (const Move& m : r.moves.moves)
-    if (m.kind == MoveKind::arc && (heights.empty() || heights.back() != m.end_mm.z()))
-      heights.push_back(m.end_mm.z());
+    if (m.kind == MoveKind::arc && (heights.empty() || heights.back() != m.end_mm.z())) heights.push_back(m.end_mm.z());
   EXPECT_EQ(heights, (std::vector<double>{-4, -8, -10}));
 }
 
@@ -150,8 +150,9 @@ TEST(KlartextPocket, SaysWhatIsWrong) {
     }
     return out;
   };
-  EXPECT_EQ(said({.round = true, .length = 7}),
-            "p.h:22:1: error: the pocket of cycle 252 is smaller than the tool of 8.0000 mm and its allowance [cycle]\n");
+  EXPECT_EQ(
+      said({.round = true, .length = 7}),
+      "p.h:22:1: error: the pocket of cycle 252 is smaller than the tool of 8.0000 mm and its allowance [cycle]\n");
   EXPECT_EQ(said({.overlap = 2}),
             "p.h:26:1: error: an overlap Q370 of 2; greater than 0 and less than 2 was expected [cycle]\n");
 }
