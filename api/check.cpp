@@ -50,6 +50,10 @@ struct Checked {
 nc::InterpreterOptions options_as_read(nc::InterpreterOptions options, const machine::Machine* machine,
                                        const machine::Job* job) {
   if (job && !options.inch) options.inch = job->inch;
+  if (job) {
+    const auto radii = kinematics::reading_of(*job).given.tool_offsets;
+    options.tool_offsets.insert(radii.begin(), radii.end());
+  }
   if (!machine) return options;
   options.rotary_axes = kinematics::rotary_options(*machine);
   if (job && !options.rotary_axes.empty() &&

@@ -19,6 +19,7 @@
 #include "machine/machine.h"
 #include "machine/machine_presets.h"
 #include "machine/material_presets.h"
+#include "nc/cutter_radii.h"
 #include "nc/program.h"
 #include "report/job_proposal.h"
 
@@ -103,18 +104,39 @@ bool wants_axes(const Diagnostic& d) {
   return d.check == "rotary-axis" || d.check == "tilted-plane" || d.check == "not-read";
 }
 
+/// A cutter of which nothing says the diameter; as report::job_text() proposes it.
+constexpr double kCutter_mm = 10;
+
+/// The moves. Where cycles ask for the radius of cutters, those of the job's first proposal.
+nc::Interpretation moves_of(const nc::Program& text, nc::InterpreterOptions options, Diagnostics& diagnostics) {
+  Diagnostics of_first = diagnostics;
+  nc::Interpretation first = nc::interpret(text, options, of_first);
+  const bool asked = of_first.has_errors() && std::ranges::any_of(of_first.all(), [](const Diagnostic& d) {
+                       return d.check == "radius-unknown" || d.check == "unknown-parameter";
+                     });
+  if (!asked) {
+    diagnostics = std::move(of_first);
+    return first;
+  }
+  for (const nc::ModalState& state : first.states)
+    nc::set_cutter_radius(options.tool_offsets, state.tool, kCutter_mm / 2);
+  for (const nc::Event& e : first.events)
+    if (e.kind == nc::EventKind::tool_change)
+      nc::set_cutter_radius(options.tool_offsets, static_cast<int>(e.value), kCutter_mm / 2);
+  return nc::interpret(text, options, diagnostics);
+}
+
 /// The moves; where no machine is named and the program turns rotary axes, those of a machine that has them. What such
 /// a machine cannot read either is said of it, not that rotary axes are missing.
 ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, Diagnostics& diagnostics) {
   Diagnostics upright = diagnostics;
-  ReadForJob out{nc::interpret(text, interpreter_of(arguments.machine, arguments.interpreter), upright),
-                 arguments.machine};
+  ReadForJob out{moves_of(text, interpreter_of(arguments.machine, arguments.interpreter), upright), arguments.machine};
   const bool turns = std::ranges::any_of(upright.all(), wants_axes);
   if (turns && arguments.machine.empty())
     for (const char* preset : kFiveAxisPresets) {
       if (preset != kFiveAxisPresets.front() && !upright.has_errors()) break;
       Diagnostics tilted = diagnostics;
-      nc::Interpretation with_axes = nc::interpret(text, interpreter_of(preset, arguments.interpreter), tilted);
+      nc::Interpretation with_axes = moves_of(text, interpreter_of(preset, arguments.interpreter), tilted);
       if (tilted.has_errors()) {
         if (upright.has_errors() && std::ranges::none_of(tilted.all(), wants_axes)) upright = std::move(tilted);
         continue;
@@ -141,8 +163,8 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
   const auto [moves, machine] = read_moves(arguments, text, diagnostics);
   if (moves.moves.empty() && !diagnostics.has_errors())
-    diagnostics.add(text.source.diagnostic(Severity::error, 0,
-                                           "the program has no moves; one that cuts was expected for a job", "no-moves"));
+    diagnostics.add(text.source.diagnostic(
+        Severity::error, 0, "the program has no moves; one that cuts was expected for a job", "no-moves"));
   const nc::Summary summary = nc::summarize(text, moves);
   const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
   settle(diagnostics, options);

@@ -69,7 +69,8 @@ void add_post_rules(CLI::App& command, PostOptions& options) {
           "divide blocks by the tolerance (default), or so that no axis turns by a degree or more")
       ->check(CLI::IsMember({"tolerance", "one-degree"}).description(""))
       ->type_name("tolerance|one-degree");
-  command.add_flag("--inverse-time", options.inverse_time, "G93: F of each rewritten feed block is 1/min");
+  command.add_flag("--inverse-time", options.inverse_time,
+                   "G93: F of each rewritten feed block is 1/min; not in Klartext");
   command
       .add_option("--retract-mm", options.retract_mm,
                   "how far the tool goes off along its axis where axes turn back; default 50")

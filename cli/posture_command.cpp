@@ -97,8 +97,9 @@ void add_one_direction(CLI::App& command, PostureOptions& options) {
       .add_option_function<OneDirection>(
           "--write-as",
           [&options](const OneDirection& written) { options.write_as = kWrittenAs[static_cast<std::size_t>(written)]; },
-          "indexed: in a tilted frame (G68.2), under the dynamic work offset (G254), in joints, or under "
-          "tool-centre-point control (tip); default: as the control has it")
+          "indexed: in a tilted frame (G68.2, PLANE SPATIAL, CYCLE800), under the dynamic work offset (G254), in "
+          "joints, "
+          "or under tool-centre-point control (tip); default: as the control has it")
       ->transform(CLI::CheckedTransformer(std::map<std::string, OneDirection>{{"tilted", OneDirection::tilted},
                                                                               {"dynamic", OneDirection::dynamic},
                                                                               {"joints", OneDirection::joints},

@@ -15,6 +15,7 @@
 #include "kinematics/offset_check.h"
 #include "kinematics/program_joints.h"
 #include "machine/machine_presets.h"
+#include "nc/cutter_radii.h"
 #include "nc/language.h"
 
 namespace camber::kinematics {
@@ -85,6 +86,8 @@ void say_at(const MachineProgram& program, const nc::Move& move, const char* che
 ReadingOptions reading_of(const machine::Job& job) {
   ReadingOptions out;
   out.given.inch = job.inch;
+  for (const auto& [number, tool] : job.tools)
+    nc::set_cutter_radius(out.given.tool_offsets, number, tool.diameter_mm / 2);
   if (machine::is_preset(job.machine.path)) {
     // On a machine of a class: the part's zero lies at the machine's, and a tool is as long as it and its holder stand
     // out.

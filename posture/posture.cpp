@@ -274,8 +274,8 @@ void Maker::write(Postured& out) const {
   const bool framed = request_.options.indexed &&
                       (request_.written == nc::OneDirection::tilted || request_.written == nc::OneDirection::dynamic);
   if (framed) {
-    const WrittenFrame frame = frame_text(chain, request_.written, axes.front(), decimals,
-                                          *nc::five_axis_text(program_, dialect()));
+    const WrittenFrame frame =
+        frame_text(chain, request_.written, axes.front(), decimals, *nc::five_axis_text(program_, dialect()));
     options.frame = frame.frame;
     axes.assign(axes.size(), frame.axis);
   }

@@ -142,8 +142,8 @@ PostWriter::Number PostWriter::feed_of(const nc::Move& move, const PostPoint& po
   return {value, decimals_for(value)};
 }
 
-std::string PostWriter::set_feed(const nc::Move& move, const PostPoint& point, const Vec3& before,
-                                 const Vec3& turn_deg, nc::BlockEdit* edit) {
+std::string PostWriter::set_feed(const nc::Move& move, const PostPoint& point, const Vec3& before, const Vec3& turn_deg,
+                                 nc::BlockEdit* edit) {
   const nc::Word* own = edit ? edit->find('F') : nullptr;
   const bool inverse = mode_of(move) == nc::FeedMode::inverse_time;
   if (point.rapid || (point.time_s <= 0 && !inverse)) {

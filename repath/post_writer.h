@@ -62,7 +62,7 @@ class PostWriter {
   std::string axes_;  ///< letters of the rotary axes
   Vec3 tool_axis_, gauge_mm_;
 
-  std::map<std::uint32_t, nc::BlockEdit> edits_;                                   ///< blocks with changed words
+  std::map<std::uint32_t, nc::BlockEdit> edits_;                                  ///< blocks with changed words
   std::map<std::uint32_t, std::vector<std::string>> in_front_, behind_, pieces_;  ///< lines about them
   std::map<std::uint32_t, std::vector<PostedPiece>> lines_;  ///< of `pieces_`, with the block's own as the first
 
@@ -72,9 +72,9 @@ class PostWriter {
   bool all_words_ = true;                        ///< the next block names every axis
   double feed_ = -1;                             ///< modal F; -1: not known
   nc::FeedMode feed_mode_ = nc::FeedMode::per_minute;
-  std::optional<bool> rapid_{};      ///< the motion in force is a rapid, or a line; not given: another one
-  bool feed_is_ours_ = false;        ///< modal F or feed mode are not those of the given text
-  std::uint32_t next_block_ = 0;     ///< whose codes were not looked at
+  std::optional<bool> rapid_{};   ///< the motion in force is a rapid, or a line; not given: another one
+  bool feed_is_ours_ = false;     ///< modal F or feed mode are not those of the given text
+  std::uint32_t next_block_ = 0;  ///< whose codes were not looked at
 };
 
 }  // namespace camber::repath

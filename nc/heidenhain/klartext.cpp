@@ -30,7 +30,7 @@ Klartext::Klartext(const Program& main, const InterpreterOptions& options, Diagn
   levels_.push_back({&main, tree_of(main).begin_statement, true, 0});
   parameters_.system = [this](int number) { return system_value(number); };
   for (const auto& [number, offset] : options.tool_offsets)
-    tools_[number] = {offset.length_mm, offset.effective_radius_mm()};
+    if (number >= 0) tools_[number] = {offset.length_mm, offset.effective_radius_mm()};
   update_frame();
 }
 
@@ -384,7 +384,7 @@ std::optional<double> Klartext::system_value(int number) const {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   switch (number) {
     case 108:
-      if (const auto radius = tool_radius_mm()) return *radius / unit_mm();
+      if (const auto radius = cutter_radius_mm()) return *radius / unit_mm();
       return kUnknown;
     case 109:
       return tool_called_ ? tool_axis_ : -1;

@@ -153,6 +153,8 @@ class Klartext {
   void define_tool(const Statement& s);
   void set_spindle_speed(double rpm, std::size_t offset);
   std::optional<double> tool_radius_mm() const;
+  /// For cycles: that of the tool, else of its cutter.
+  std::optional<double> cutter_radius_mm() const;
   void update_tool_length();
   double turns_per_s(const char* word);
   double teeth();
@@ -228,6 +230,9 @@ class Klartext {
   void drill_old();
   void mill_bore();
   void mill_old_pocket();
+  void mill_pocket();
+  struct Pocket;
+  void mill_pocket_level(const Pocket& pocket, double height_mm, double from_mm, double to_mm);
   void run_pattern(int number);
   void define_pattern(const Statement& s);
   struct Hole {

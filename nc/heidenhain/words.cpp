@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "nc/cutter_radii.h"
 #include "nc/heidenhain/klartext.h"
 #include "nc/mode_words.h"
 
@@ -446,6 +447,11 @@ std::optional<double> Klartext::tool_radius_mm() const {
   const auto found = tools_.find(state_.tool);
   if (found == tools_.end() || !found->second.radius_mm) return std::nullopt;
   return *found->second.radius_mm + tool_delta_radius_mm_;
+}
+
+std::optional<double> Klartext::cutter_radius_mm() const {
+  const auto known = tool_radius_mm();
+  return known ? known : nc::cutter_radius_mm(options_.tool_offsets, state_.tool);
 }
 
 /// The length of the tool counts from TOOL CALL on.

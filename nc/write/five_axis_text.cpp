@@ -14,9 +14,7 @@ namespace {
 constexpr std::initializer_list<double> kFeedModes{93, 94, 95};
 constexpr std::initializer_list<double> kMotions{0, 1, 2, 3};
 
-int code_of(FeedMode mode) {
-  return mode == FeedMode::inverse_time ? 93 : mode == FeedMode::per_minute ? 94 : 95;
-}
+int code_of(FeedMode mode) { return mode == FeedMode::inverse_time ? 93 : mode == FeedMode::per_minute ? 94 : 95; }
 
 std::string joined(const std::vector<std::string>& words) {
   std::string out;

@@ -21,7 +21,7 @@ namespace camber::nc {
 
 /// A frame for blocks at one direction of the tool.
 struct FrameLines {
-  std::vector<std::string> before, behind;  ///< lines that switch it on and off
+  std::vector<std::string> before, behind;                        ///< lines that switch it on and off
   Eigen::Matrix3d work_from_frame = Eigen::Matrix3d::Identity();  ///< that of the angles as they are written
 };
 

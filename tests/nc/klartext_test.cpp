@@ -463,8 +463,8 @@ TEST(Klartext, WrongProgramsByTheirMessages) {
             "p.h:4:3: error: FL (free contour programming) is not supported; L, C and CR blocks with end points were "
             "expected "
             "[not-supported]");
-  EXPECT_EQ(one("CYCL DEF 251 RECTANGULAR POCKET"),
-            "p.h:4:3: error: CYCL DEF 251 (a pocket, slot or stud) is not supported; the finished path was expected "
+  EXPECT_EQ(one("CYCL DEF 253 SLOT MILLING"),
+            "p.h:4:3: error: CYCL DEF 253 (a slot or stud) is not supported; the finished path was expected "
             "[not-supported]");
   EXPECT_EQ(one("C X+5 DR+"), "p.h:4:3: error: C without a circle centre; CC was expected before [pole]");
   EXPECT_EQ(one("CR X+10 Y+0 R+3 DR+"),
@@ -623,8 +623,8 @@ TEST(Klartext, FeedsPerToothAndPerTurn) {
 }
 
 TEST(Klartext, CallsOfARefusedCycleAreNotASecondError) {
-  EXPECT_EQ(said("CYCL DEF 251 POCKET Q215=0\nL X+5 FMAX M99\n"),
-            Messages{"p.h:4:1: error: CYCL DEF 251 (a pocket, slot or stud) is not supported; the finished path was "
+  EXPECT_EQ(said("CYCL DEF 253 SLOT Q215=0\nL X+5 FMAX M99\n"),
+            Messages{"p.h:4:1: error: CYCL DEF 253 (a slot or stud) is not supported; the finished path was "
                      "expected [not-supported]"});
   EXPECT_EQ(said("CYCL DEF 392 NAME Q1=0\nL X+5 FMAX M99\n"),
             Messages{"p.h:4:1: warning: CYCL DEF 392 is a cycle of the machine's maker; what it does is not known, and "

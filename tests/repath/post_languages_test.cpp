@@ -86,7 +86,8 @@ std::string iso(const Cut& cut, bool tip) {
   std::string out = "G21 G17 G90 G94\nG54\nT1 M6\nS3000 M3\n";
   out += tip ? "G43.4 H1\n" : "G43 H1\n";
   for (const Cut::Point& p : cut.points)
-    out += (p.rapid ? "G0" : "G1") + places(cut, p, " {}{:.3f}") + (p.rapid ? "" : fmt::format(" F{:.0f}", p.feed)) + "\n";
+    out +=
+        (p.rapid ? "G0" : "G1") + places(cut, p, " {}{:.3f}") + (p.rapid ? "" : fmt::format(" F{:.0f}", p.feed)) + "\n";
   return out + "G49\nM30\n";
 }
 
@@ -155,7 +156,10 @@ TEST(PostLanguages, TheSameCutBecomesTheSamePosesInEveryLanguage) {
       for (const bool tip : {true, false}) {
         SCOPED_TRACE(fmt::format("{} {} {}", name, i, tip));
         const Cut cut = random_cut(random, fanuc);
-        const PostOptions options{.target = tip ? PostTarget::joints : PostTarget::tcp, .tolerance_mm = 0.02, .rapid_tolerance_mm = 1, .decimals = 6};
+        const PostOptions options{.target = tip ? PostTarget::joints : PostTarget::tcp,
+                                  .tolerance_mm = 0.02,
+                                  .rapid_tolerance_mm = 1,
+                                  .decimals = 6};
         std::vector<std::vector<ToolPose>> given, made;
         const auto add = [&](const std::string& text, const machine::Machine& machine) {
           const FiveAxisProgram before = read_five_axes(text, machine);
@@ -226,10 +230,11 @@ TEST(PostLanguages, KlartextArcsBecomeLinesUnderTipControl) {
 TEST(PostLanguages, SiemensTakesTransformationsAndDirectionsOut) {
   const machine::Machine machine = with_control(sample("table_bc"), "siemens");
   const std::string head = "N1 G17 G71 G90 G94 G54\nN2 T1\nN3 M6 D1\nN4 G0 X0 Y0 Z50 S3000 M3\n";
-  const FiveAxisProgram given = read_five_axes(head +
-                                                   "N5 TRAORI\nN6 G1 X10 A3=0 B3=0 C3=1 F600 M8 ; cut\n"
-                                                   "N7 B=AC(0.5) C=DC(0.25) M9\nN8 TRAFOOF\nN9 G0 X0 Y0 Z=AC(50)\nN10 M30\n",
-                                               machine);
+  const FiveAxisProgram given =
+      read_five_axes(head +
+                         "N5 TRAORI\nN6 G1 X10 A3=0 B3=0 C3=1 F600 M8 ; cut\n"
+                         "N7 B=AC(0.5) C=DC(0.25) M9\nN8 TRAFOOF\nN9 G0 X0 Y0 Z=AC(50)\nN10 M30\n",
+                     machine);
   EXPECT_EQ(posted(given, machine, {}).text,
             head +
                 "N5\nN6 G1 X10 Y0 Z50 B0 C0 F600 M8 ; cut\n"
@@ -246,8 +251,8 @@ TEST(PostLanguages, SaysWhatALanguageCannot) {
             "p.nc:1:1: error: no move is under tool-centre-point control; M128 or FUNCTION TCPM was expected "
             "[nothing-to-post]\n");
   const machine::Machine sinumerik = with_control(sample("table_bc"), "siemens");
-  EXPECT_EQ(said(read_five_axes("%_N_A_MPF\nN1 G17 G71 G90 G94 G54\nN2 T1 M6 D1\nN3 G0 X0 Y0 Z50\nN4 M30\n", sinumerik), sinumerik,
-                 {}),
+  EXPECT_EQ(said(read_five_axes("%_N_A_MPF\nN1 G17 G71 G90 G94 G54\nN2 T1 M6 D1\nN3 G0 X0 Y0 Z50\nN4 M30\n", sinumerik),
+                 sinumerik, {}),
             "p.nc:1:1: error: no move is under tool-centre-point control; TRAORI was expected [nothing-to-post]\n");
 }
 

@@ -110,10 +110,10 @@ class KlartextFiveAxis : public FiveAxisText {
   /// Spatial angles turn about the fixed X, then Y, then Z.
   FrameLines tilted_frame(const Vec3& axis, int decimals, bool) const override {
     const Eigen::Matrix3d wanted = euler_zxz(leaning_frame(axis));
-    const Vec3 angles = rounded_angles({std::atan2(wanted(2, 1), wanted(2, 2)),
-                                        std::asin(std::clamp(-wanted(2, 0), -1.0, 1.0)),
-                                        std::atan2(wanted(1, 0), wanted(0, 0))},
-                                       decimals);
+    const Vec3 angles =
+        rounded_angles({std::atan2(wanted(2, 1), wanted(2, 2)), std::asin(std::clamp(-wanted(2, 0), -1.0, 1.0)),
+                        std::atan2(wanted(1, 0), wanted(0, 0))},
+                       decimals);
     FrameLines out;
     std::string line = "PLANE SPATIAL";
     for (int i = 0; i < 3; ++i)

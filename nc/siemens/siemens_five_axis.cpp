@@ -30,9 +30,8 @@ class SiemensFiveAxis : public FiveAxisCodes {
     });
   }
   void take_out_control(BlockEdit& edit) const override {
-    take_out_items(edit, [](const Item& i) {
-      return i.row->does == Does::transform_on || i.row->does == Does::transform_off;
-    });
+    take_out_items(
+        edit, [](const Item& i) { return i.row->does == Does::transform_on || i.row->does == Does::transform_off; });
   }
 
   /// X12.5, X=12.5.
@@ -54,18 +53,18 @@ class SiemensFiveAxis : public FiveAxisCodes {
       for (const char letter : {'I', 'J', 'K', 'R'})
         if (const Word* w = edit.find(letter)) take_out(edit, *w);
     take_out_items(edit, [&](const Item& i) {
-      return i.row->does == Does::direction_a || i.row->does == Does::direction_b ||
-             i.row->does == Does::direction_c || (arc && i.row->does == Does::turns);
+      return i.row->does == Does::direction_a || i.row->does == Does::direction_b || i.row->does == Does::direction_c ||
+             (arc && i.row->does == Does::turns);
     });
   }
 
   /// CYCLE800 with mode 57: about X, the new Y, the new Z.
   FrameLines tilted_frame(const Vec3& axis, int decimals, bool negative) const override {
     const Eigen::Matrix3d wanted = euler_zxz(leaning_frame(axis));
-    const Vec3 angles = rounded_angles({std::atan2(-wanted(1, 2), wanted(2, 2)),
-                                        std::asin(std::clamp(wanted(0, 2), -1.0, 1.0)),
-                                        std::atan2(-wanted(0, 1), wanted(0, 0))},
-                                       decimals);
+    const Vec3 angles =
+        rounded_angles({std::atan2(-wanted(1, 2), wanted(2, 2)), std::asin(std::clamp(wanted(0, 2), -1.0, 1.0)),
+                        std::atan2(-wanted(0, 1), wanted(0, 0))},
+                       decimals);
     FrameLines out;
     std::string turns;
     for (int i = 0; i < 3; ++i) turns += "," + format_number(deg_from_rad(angles[i]), decimals, style_);

@@ -1,0 +1,161 @@
+// Cycles 251 and 252: what the cutter reaches, against the pocket that they describe.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "nc/cutter_radii.h"
+#include "tests/nc/nc_text.h"
+
+namespace camber::nc {
+namespace {
+
+constexpr double kRadius_mm = 4;
+constexpr double kStep_mm = 0.5;      ///< between the points of a path
+constexpr double kReached_mm = 0.01;  ///< that points of a path lie apart costs so much
+
+struct PocketCase {
+  bool round = false;
+  double length = 60, width = 34, corner = 7, angle_deg = 0;
+  double side = 0, floor = 0, overlap = 1.2;
+  int operation = 0, climb = 1, place = 0;
+};
+
+std::string text_of(const PocketCase& p) {
+  std::string out = fmt::format(
+      "BEGIN PGM A MM\nTOOL DEF 1 L+0 R+{}\nTOOL CALL 1 Z S3000\nL X+20 Y+30 Z+50 R0 FMAX M3\nCYCL DEF {} ~\nQ215={} "
+      "~\n",
+      kRadius_mm, p.round ? 252 : 251, p.operation);
+  out += p.round ? fmt::format("Q223={} ~\n", p.length)
+                 : fmt::format("Q218={} ~\nQ219={} ~\nQ220={} ~\nQ224={} ~\nQ367={} ~\n", p.length, p.width, p.corner,
+                               p.angle_deg, p.place);
+  return out + fmt::format(
+                   "Q368={} ~\nQ207=500 ~\nQ351={} ~\nQ201=-10 ~\nQ202=4 ~\nQ369={} ~\nQ206=150 ~\nQ338=5 ~\nQ200=2 "
+                   "~\nQ203=0 ~\nQ204=20 ~\nQ370={} ~\nQ366=0 ~\nQ385=400\nCYCL CALL\nM30\nEND PGM A MM\n",
+                   p.side, p.climb, p.floor, p.overlap);
+}
+
+struct Cut {
+  std::vector<Vec3> points;  ///< of the feed moves, in coordinates of the pocket
+  double turned_rad = 0;     ///< sum of the turns of its arcs
+};
+
+Cut cut_of(const PocketCase& p, const Interpretation& moves) {
+  Cut out;
+  const double c = std::cos(rad_from_deg(p.angle_deg)), s = std::sin(rad_from_deg(p.angle_deg));
+  Vec3 middle(20, 30, 0);
+  if (p.place == 1) middle += Vec3(c * p.length / 2 - s * p.width / 2, s * p.length / 2 + c * p.width / 2, 0);
+  for (const Move& m : moves.moves) {
+    if (m.kind != MoveKind::linear && m.kind != MoveKind::arc) continue;
+    if (m.arc != Move::kNoArc) out.turned_rad += moves.arcs[m.arc].sweep_rad;
+    const int n = std::max(1, static_cast<int>(length_mm(moves, m) / kStep_mm));
+    for (int i = 0; i <= n; ++i) {
+      const Vec3 d = point_at(moves, m, static_cast<double>(i) / n) - middle;
+      out.points.emplace_back(c * d.x() + s * d.y(), -s * d.x() + c * d.y(), d.z());
+    }
+  }
+  return out;
+}
+
+/// How far a point lies inside the walls of the pocket, less `off` all round.
+double inside_mm(const PocketCase& p, double x, double y, double off) {
+  if (p.round) return p.length / 2 - off - std::hypot(x, y);
+  const double corner = std::max(p.corner - off, 0.0);
+  const double u = std::abs(x) - (p.length / 2 - off - corner), v = std::abs(y) - (p.width / 2 - off - corner);
+  return corner - std::hypot(std::max(u, 0.0), std::max(v, 0.0)) - std::min(std::max(u, v), 0.0);
+}
+
+std::vector<PocketCase> cases() {
+  return {{},
+          {.angle_deg = 33, .side = 0.4, .floor = 0.3, .place = 1},
+          {.corner = 0, .overlap = 1, .climb = -1},
+          {.width = 60, .side = 0.5, .floor = 0.5, .operation = 1},
+          {.side = 0.5, .floor = 0.5, .operation = 2},
+          {.round = true},
+          {.round = true, .length = 21, .side = 0.3, .floor = 0.2, .overlap = 0.7, .climb = -1},
+          {.round = true, .length = 8.5}};
+}
+
+TEST(KlartextPocket, TheCutterKeepsWithinTheWallsAndReachesAllOfTheFloor) {
+  for (std::size_t k = 0; k < cases().size(); ++k) {
+    SCOPED_TRACE(k);
+    const PocketCase p = cases()[k];
+    const Read r = read_clean(text_of(p));
+    Cut cut = cut_of(p, r.moves);
+    const double side = p.operation == 1 ? p.side : 0, floor = p.operation == 1 ? p.floor : 0;
+    double nearest = 1e9, lowest = 1e9;
+    for (const Vec3& at : cut.points) {
+      nearest = std::min(nearest, inside_mm(p, at.x(), at.y(), std::max(side, 0.0)));
+      lowest = std::min(lowest, at.z());
+    }
+    const double corner_gap = p.corner < kRadius_mm && !p.round ? 0 : kReached_mm;
+    EXPECT_GE(nearest, kRadius_mm - 1e-6 - corner_gap);
+    EXPECT_LE(nearest, kRadius_mm + kReached_mm);
+    EXPECT_NEAR(lowest, -10 + floor, 1e-9);
+    // All of the floor, but for what the cutter cannot reach in sharp corners.
+    PocketCase reached = p;
+    if (!p.round) reached.corner = std::max(p.corner, kRadius_mm);
+    std::erase_if(cut.points, [&](const Vec3& at) { return at.z() > lowest + 1e-9; });
+    std::size_t left = 0, all = 0;
+    for (double x = -p.length / 2; x <= p.length / 2; x += 1.3)
+      for (double y = -p.length / 2; y <= p.length / 2; y += 1.3) {
+        if (inside_mm(reached, x, y, side) < 2 * kReached_mm) continue;
+        ++all;
+        left += std::ranges::none_of(cut.points, [&](const Vec3& at) {
+          return (at.head<2>() - Vec2(x, y)).squaredNorm() < kRadius_mm * kRadius_mm;
+        });
+      }
+    EXPECT_GT(all, 20u);
+    EXPECT_EQ(left, 0u);
+    EXPECT_EQ(cut.turned_rad > 0, p.climb > 0);
+    EXPECT_NEAR(r.moves.moves.back().end_mm.z(), 20, 1e-9);
+  }
+}
+
+TEST(KlartextPocket, CutsNoDeeperThanQ202AtOnce) {
+  const PocketCase p;
+  const Read r = read_clean(text_of(p));
+  std::vector<double> heights;
+  for (const Move& m : r.moves.moves)
+    if (m.kind == MoveKind::arc && (heights.empty() || heights.back() != m.end_mm.z())) heights.push_back(m.end_mm.z());
+  EXPECT_EQ(heights, (std::vector<double>{-4, -8, -10}));
+}
+
+TEST(KlartextPocket, TheRadiusOfTheCutterMayComeFromTheJob) {
+  const std::string text = text_of({.round = true});
+  const std::string without = text.substr(0, text.find("TOOL DEF")) + text.substr(text.find("TOOL CALL"));
+  const Read unknown = read_text(without, units(), "p.h");
+  ASSERT_TRUE(unknown.diagnostics.has_errors());
+  EXPECT_EQ(unknown.diagnostics.all().front().check, "radius-unknown");
+  InterpreterOptions options = units();
+  set_cutter_radius(options.tool_offsets, 1, kRadius_mm);
+  const Read known = read_text(without, options, "p.h"), given = read_clean(text);
+  EXPECT_FALSE(known.diagnostics.has_errors());
+  ASSERT_EQ(known.moves.moves.size(), given.moves.moves.size());
+  for (std::size_t i = 0; i < known.moves.moves.size(); ++i)
+    EXPECT_LT((known.moves.moves[i].end_mm - given.moves.moves[i].end_mm).norm(), 1e-12);
+}
+
+TEST(KlartextPocket, SaysWhatIsWrong) {
+  const auto said = [](const PocketCase& p) {
+    const Read r = read_text(text_of(p), units(), "p.h");
+    std::string out;
+    for (Diagnostic d : r.diagnostics.all()) {
+      d.source_line.clear();
+      out += to_string(d) + "\n";
+    }
+    return out;
+  };
+  EXPECT_EQ(
+      said({.round = true, .length = 7}),
+      "p.h:22:1: error: the pocket of cycle 252 is smaller than the tool of 8.0000 mm and its allowance [cycle]\n");
+  EXPECT_EQ(said({.overlap = 2}),
+            "p.h:26:1: error: an overlap Q370 of 2; greater than 0 and less than 2 was expected [cycle]\n");
+}
+
+}  // namespace
+}  // namespace camber::nc
