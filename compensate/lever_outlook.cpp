@@ -17,6 +17,7 @@ namespace {
 constexpr double kPays = 0.1;    // of the 95th percentile
 constexpr double kLongest = 2;   // of the given machine time, in addition
 constexpr double kWanted = 0.9;  // of the tolerance
+constexpr double kShortest = 0.005;  // of the given machine time: what takes less is what the shifts do
 
 /// The best round's observations, and what the best shifts leave of them.
 struct Left {
@@ -73,7 +74,8 @@ std::vector<LeverOutlook> unused_levers(const Task& task, const State& state) {
   const Left left = left_by_shifts(task, state);
   const double now_um = state.rounds[state.best.round].error_um.p95;
   for (const auto& found : {of_second_cuts(task, state, left), of_lower_feeds(task, state, left)})
-    if (found && found->p95_um <= (1 - kPays) * now_um) out.push_back(*found);
+    if (found && found->p95_um <= (1 - kPays) * now_um && found->extra_s >= kShortest * task.given.time_s)
+      out.push_back(*found);
   return out;
 }
 

@@ -28,12 +28,19 @@ std::vector<std::size_t> without_run_at(const std::vector<PassRun>& runs, std::v
   return chosen;
 }
 
-/// Removes some of the runs with the least error.
-std::vector<std::size_t> without_least(const std::vector<PassRun>& runs, std::vector<std::size_t> chosen) {
-  std::ranges::stable_sort(chosen, [&](std::size_t a, std::size_t b) { return runs[a].left_mm > runs[b].left_mm; });
-  chosen.resize(chosen.size() - (chosen.size() + kDropped - 1) / kDropped);
-  std::ranges::sort(chosen);
-  return chosen;
+/// Removes some of the cuts before which the least error is left. `chosen`: ascending.
+std::vector<std::size_t> without_least(const std::vector<PassRun>& runs, const std::vector<std::size_t>& chosen) {
+  std::vector<std::pair<double, std::size_t>> before_mm;  // what is left before each cut, and its run
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const bool again = i > 0 && chosen[i] == chosen[i - 1];
+    before_mm.emplace_back(again ? kLeftByCut * before_mm.back().first : runs[chosen[i]].left_mm, chosen[i]);
+  }
+  std::ranges::stable_sort(before_mm, [](const auto& a, const auto& b) { return a.first > b.first; });
+  before_mm.resize(chosen.size() - (chosen.size() + kDropped - 1) / kDropped);
+  std::vector<std::size_t> out;
+  for (const auto& [left, run] : before_mm) out.push_back(run);
+  std::ranges::sort(out);
+  return out;
 }
 
 /// The given program's block before which a rapid between two cuts collides.
@@ -143,7 +150,7 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
     }
     if (made.feed.time_s > allowed_s) {
       out.too_slow = true;
-      if (!task.options.time_budget_percent) return out;  // all of them within the next step of time
+      if (!task.budget_percent()) return out;  // all of them within the next step of time
       chosen = without_least(runs, chosen);
       continue;
     }

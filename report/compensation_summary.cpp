@@ -89,6 +89,16 @@ Json depth(const compensate::Depth& d) {
   return j;
 }
 
+/// What levers that were not used would bring.
+Json unused_levers(const compensate::CompensationResult& c) {
+  Json out = Json::array();
+  for (const compensate::LeverOutlook& o : c.verdict.unused)
+    out.push_back({{"lever", o.lever == machine::Lever::passes ? "passes" : "feed"},
+                   {"p95_um", o.p95_um},
+                   {"extra_time_s", o.extra_s}});
+  return out;
+}
+
 /// What was used and what it cost.
 Json levers_used(const compensate::CompensationResult& c) {
   const compensate::Round& best = c.rounds[c.best];
@@ -205,6 +215,7 @@ std::string compensate_json(const compensate::CompensationResult& c, const machi
   j["not_judged_mm2"] = c.figures.not_judged_mm2;
   j["stage_between"] = c.figures.between;
   j["causes"] = causes(c);
+  j["unused_levers"] = unused_levers(c);
   j["binding_limits"] = limits(c);
   j["verdict"] = verdict(verdict_text(c, asked));
   j["split_before_um"] = split(c.figures.split_before);

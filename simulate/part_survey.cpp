@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include "base/diagnostics.h"
 #include "base/stage.h"
@@ -170,82 +172,64 @@ workpiece::SolidOptions solid_options(const machine::Workpiece& part, double cel
   throw InputError({d});
 }
 
-/// Surveys one run.
-class RunSurvey {
+/// A run, and how its places are solved.
+struct RunToSurvey {
+  const machine::Job& job;
+  std::span<const Stamp> stamps;
+  const PartSurveyOptions& options;
+  const workpiece::SolidOptions& solid;
+  removal::CutterShape shape;
+  const Toucher& toucher;
+  const std::vector<double>& height_mm;
+};
+
+/// Surveys one stretch of a run.
+class StretchSurvey {
  public:
-  RunSurvey(const machine::Job& job, const machine::Tool& tool, std::span<const Stamp> stamps, const Stock& stock,
-            const PartSurveyOptions& options, const workpiece::SolidOptions& solid, PartSurvey& all,
-            PartSurvey::Run& out)
-      : job_(job),
-        stamps_(stamps),
-        options_(options),
-        solid_options_(solid),
-        shape_(removal::shape_of(tool)),
-        top_mm_(top_of(stock, tool, stamps)),
-        toucher_(tool, top_mm_),
-        all_(all),
-        out_(out) {
-    constexpr double kApart_mm = 4;
-    const std::size_t count =
-        std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(top_mm_ / kApart_mm)) + 1, 2, 6);
-    for (std::size_t i = 0; i < count; ++i)
-      out_.height_mm.push_back(top_mm_ * static_cast<double>(i) / static_cast<double>(count - 1));
-  }
+  struct Found {
+    std::vector<PartSurvey::Place> places;  ///< in the order of the path
+    std::size_t cells = 0;                  ///< at most
+    double cell_mm = 0, compliance_max_um_per_N = 0;
+  };
 
-  /// Leaves `stock` as the run does.
-  void survey(Stock& stock, Stage& stage) {
-    const std::vector<StampStretch> stretches = stretches_of(stamps_);
-    out_.stretches = stretches.size();
-    for (std::size_t s = 0; s < stretches.size(); ++s) {
-      stretch_ = s;
-      in_stretch_ = stretches[s];
-      const std::size_t first = out_.places.size();
-      survey_stretch(stock, stage);
-      std::sort(out_.places.begin() + static_cast<std::ptrdiff_t>(first), out_.places.end(),
-                [](const auto& a, const auto& b) { return a.share < b.share; });
-    }
-  }
+  /// `stock`: before the stretch.
+  StretchSurvey(const RunToSurvey& run, std::size_t index, StampStretch stretch, Stock stock)
+      : run_(run), index_(index), stretch_(stretch), stock_(std::move(stock)) {}
 
- private:
-  static double top_of(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
-    double rise = 0;
-    for (const Stamp& s : stamps) {
-      const Vec3 corner = (s.pose.axis.array() > 0).select(stock.max_mm(), stock.min_mm());
-      rise = std::max(rise, (corner - s.pose.tip_mm).dot(s.pose.axis));
-    }
-    return engaged_top_mm(stock, tool, rise);
-  }
-
-  using Compliance = std::optional<Eigen::MatrixXd>;
-
-  void sweep(Stock& stock, std::size_t from, std::size_t end) const {
-    if (end > from) removal::sweep(stock, shape_, stamps_.subspan(from, end - from), {});
-  }
-
-  double way_mm(std::size_t from, std::size_t end) const {
-    double sum = 0;
-    for (std::size_t k = from; k < end; ++k) sum += (stamps_[k + 1].pose.tip_mm - stamps_[k].pose.tip_mm).norm();
-    return sum;
-  }
-
-  void survey_stretch(Stock& stock, Stage& stage) {
-    std::size_t at = in_stretch_.from;
-    const std::size_t last = in_stretch_.end - 1;
-    Compliance here = solve(stock, at);
+  void survey(Stage& stage) {
+    std::size_t at = stretch_.from;
+    const std::size_t last = stretch_.end - 1;
+    Compliance here = solve(stock_, at);
     while (at < last) {
       std::size_t next = at;
-      for (double way = 0; next < last && way < options_.apart_mm; ++next) way += way_mm(next, next + 1);
-      Stock after(stock);
+      for (double way = 0; next < last && way < run_.options.apart_mm; ++next) way += way_mm(next, next + 1);
+      Stock after(stock_);
       sweep(after, at, next);
       Compliance there = solve(after, next);
-      refine(stock, at, here, next, there);
-      sweep(stock, at, next);
+      refine(stock_, at, here, next, there);
+      sweep(stock_, at, next);
       stage.advance(next - at);
       at = next;
       here = std::move(there);
     }
-    sweep(stock, at, last + 1);
     stage.advance();
+    std::ranges::sort(found_.places, {}, &PartSurvey::Place::share);
+  }
+
+  const Found& found() const { return found_; }
+
+ private:
+  using Compliance = std::optional<Eigen::MatrixXd>;
+
+  void sweep(Stock& stock, std::size_t from, std::size_t end) const {
+    if (end > from) removal::sweep(stock, run_.shape, run_.stamps.subspan(from, end - from), {});
+  }
+
+  double way_mm(std::size_t from, std::size_t end) const {
+    double sum = 0;
+    for (std::size_t k = from; k < end; ++k)
+      sum += (run_.stamps[k + 1].pose.tip_mm - run_.stamps[k].pose.tip_mm).norm();
+    return sum;
   }
 
   /// Solves between two places until the line between them is near enough. `stock`: before stamp a.
@@ -260,7 +244,7 @@ class RunSurvey {
       const double way = static_cast<double>(k - a) / static_cast<double>(b - a);
       const double off = (*here - (1 - way) * *at_a - way * *at_b).norm();
       // What is left between is a quarter of it, if the compliance bends evenly.
-      if (off < std::max(4 * options_.tolerance * here->norm(), options_.negligible_mm_per_N)) return;
+      if (off < std::max(4 * run_.options.tolerance * here->norm(), run_.options.negligible_mm_per_N)) return;
     }
     refine(stock, a, at_a, k, here);
     refine(between, k, here, b, at_b);
@@ -268,14 +252,15 @@ class RunSurvey {
 
   /// Empty where the tool touches nothing.
   Compliance solve(const Stock& stock, std::size_t k) {
-    const std::vector<Touch> touches = toucher_.find(stock, stamps_, k);
+    const std::vector<Touch> touches = run_.toucher.find(stock, run_.stamps, k);
     if (touches.empty()) return std::nullopt;
-    const workpiece::Solid solid(stock, solid_options_);
+    const workpiece::Solid solid(stock, run_.solid);
     if (solid.held_mm3() <= 0)
-      loose(job_, "fixed holds nothing of the part's material; a part that is held in the stock was expected");
+      loose(run_.job, "fixed holds nothing of the part's material; a part that is held in the stock was expected");
     const Patches patches = gather(solid, touches);
     if (patches.where.empty()) return std::nullopt;
-    const Mat3 frame = tool_frame(stamps_[k].pose);
+    const ToolPose& pose = run_.stamps[k].pose;
+    const Mat3 frame = tool_frame(pose);
     std::vector<workpiece::Load> loads;
     for (const auto& where : patches.where)
       for (int a = 0; a < 2; ++a) loads.push_back({where, frame.col(a)});
@@ -285,10 +270,10 @@ class RunSurvey {
     constexpr double kTolerance = 1e-4;
     const auto moved = elastic.solve(loads, {kTolerance, 300}, &summary);
     if (!summary.solved)
-      loose(job_,
+      loose(run_.job,
             fmt::format("under the tool at X{:.1f} Y{:.1f} Z{:.1f} the part hangs on next to nothing that is held; "
                         "a part in one piece was expected",
-                        stamps_[k].pose.tip_mm.x(), stamps_[k].pose.tip_mm.y(), stamps_[k].pose.tip_mm.z()));
+                        pose.tip_mm.x(), pose.tip_mm.y(), pose.tip_mm.z()));
     const auto size = static_cast<Eigen::Index>(loads.size());
     Eigen::MatrixXd own(size, size);
     for (Eigen::Index i = 0; i < size; ++i)
@@ -296,28 +281,75 @@ class RunSurvey {
         const workpiece::Load& read = loads[static_cast<std::size_t>(i)];
         own(i, j) = read.direction.dot(displacement_mm(read.where, moved[static_cast<std::size_t>(j)]));
       }
-    const Eigen::MatrixXd spread = spread_over(out_.height_mm, patches);
+    const Eigen::MatrixXd spread = spread_over(run_.height_mm, patches);
     const Eigen::MatrixXd here = spread * ((own + own.transpose()) / 2) * spread.transpose();
-    out_.places.push_back({stretch_, in_stretch_.share_of(k), here});
-    all_.cells = std::max(all_.cells, solid.cells().size());
-    all_.cell_mm = solid.cell_mm();
-    ++all_.solved;
-    all_.compliance_max_um_per_N = std::max(all_.compliance_max_um_per_N, 1000 * own.diagonal().maxCoeff());
+    found_.places.push_back({index_, stretch_.share_of(k), here});
+    found_.cells = std::max(found_.cells, solid.cells().size());
+    found_.cell_mm = solid.cell_mm();
+    found_.compliance_max_um_per_N = std::max(found_.compliance_max_um_per_N, 1000 * own.diagonal().maxCoeff());
     return here;
   }
 
-  const machine::Job& job_;
-  std::span<const Stamp> stamps_;
-  const PartSurveyOptions& options_;
-  const workpiece::SolidOptions& solid_options_;
-  removal::CutterShape shape_;
-  double top_mm_;
-  Toucher toucher_;
-  PartSurvey& all_;
-  PartSurvey::Run& out_;
-  std::size_t stretch_ = 0;
-  StampStretch in_stretch_;
+  const RunToSurvey& run_;
+  std::size_t index_;  ///< of the run's stretches
+  StampStretch stretch_;
+  Stock stock_;
+  Found found_;
 };
+
+double top_of(const Stock& stock, const machine::Tool& tool, std::span<const Stamp> stamps) {
+  double rise = 0;
+  for (const Stamp& s : stamps) {
+    const Vec3 corner = (s.pose.axis.array() > 0).select(stock.max_mm(), stock.min_mm());
+    rise = std::max(rise, (corner - s.pose.tip_mm).dot(s.pose.axis));
+  }
+  return engaged_top_mm(stock, tool, rise);
+}
+
+std::vector<double> run_heights_mm(double top_mm) {
+  constexpr double kApart_mm = 4;
+  const std::size_t count = std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(top_mm / kApart_mm)) + 1, 2, 6);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < count; ++i)
+    out.push_back(top_mm * static_cast<double>(i) / static_cast<double>(count - 1));
+  return out;
+}
+
+void add(const StretchSurvey::Found& found, PartSurvey& all, PartSurvey::Run& out) {
+  out.places.insert(out.places.end(), found.places.begin(), found.places.end());
+  all.solved += found.places.size();
+  all.cells = std::max(all.cells, found.cells);
+  if (found.cell_mm > 0) all.cell_mm = found.cell_mm;
+  all.compliance_max_um_per_N = std::max(all.compliance_max_um_per_N, found.compliance_max_um_per_N);
+}
+
+/// Surveys one run, several stretches at once; leaves `stock` as the run does.
+void survey_run(const RunToSurvey& run, Stock& stock, Stage& stage, PartSurvey& all, PartSurvey::Run& out) {
+  const std::vector<StampStretch> stretches = stretches_of(run.stamps);
+  out.stretches = stretches.size();
+  using Work = std::shared_ptr<StretchSurvey>;
+  using tbb::filter_mode;
+  std::size_t next = 0;
+  const auto begin = [&](tbb::flow_control& flow) -> Work {
+    if (next == stretches.size()) {
+      flow.stop();
+      return nullptr;
+    }
+    const StampStretch& s = stretches[next];
+    Work work = std::make_shared<StretchSurvey>(run, next++, s, stock);
+    removal::sweep(stock, run.shape, run.stamps.subspan(s.from, s.end - s.from), {});
+    return work;
+  };
+  const auto solve = [&](Work work) {
+    work->survey(stage);
+    return work;
+  };
+  const auto end = [&](const Work& work) { add(work->found(), all, out); };
+  tbb::parallel_pipeline(static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
+                         tbb::make_filter<void, Work>(filter_mode::serial_in_order, begin) &
+                             tbb::make_filter<Work, Work>(filter_mode::parallel, solve) &
+                             tbb::make_filter<Work, void>(filter_mode::serial_in_order, end));
+}
 
 std::span<const Stamp> stamps_of(const removal::StampPath& path, const removal::ToolRun& run) {
   return std::span(path.stamps).subspan(run.from, run.count);
@@ -349,10 +381,16 @@ PartSurvey survey_part(const machine::Job& job, const Stock& blank, const remova
   for (std::size_t r = 0; r < path.runs.size(); ++r) {
     const removal::ToolRun& run = path.runs[r];
     const machine::Tool& tool = job.tools.at(run.tool);
-    if (run.kind == removal::RunKind::milling)
-      RunSurvey(job, tool, stamps_of(path, run), stock, options, solid, out, out.runs[r]).survey(stock, stage);
-    else
-      removal::sweep(stock, removal::shape_of(tool), stamps_of(path, run), {});
+    const std::span<const Stamp> stamps = stamps_of(path, run);
+    if (run.kind != removal::RunKind::milling) {
+      removal::sweep(stock, removal::shape_of(tool), stamps, {});
+      continue;
+    }
+    const double top_mm = top_of(stock, tool, stamps);
+    const Toucher toucher(tool, top_mm);
+    out.runs[r].height_mm = run_heights_mm(top_mm);
+    survey_run({job, stamps, options, solid, removal::shape_of(tool), toucher, out.runs[r].height_mm}, stock, stage,
+               out, out.runs[r]);
   }
   if (out.solved == 0)
     loose(job, "nothing that is held of the part is under the tool anywhere; a part that it cuts was expected");

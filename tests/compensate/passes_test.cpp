@@ -48,7 +48,7 @@ TEST(Passes, CutTwiceTheRunsOfTheGreatestErrorThatFit) {
 TEST(Passes, CutAgainWhatIsExpectedToBeLeftOver) {
   const std::vector<PassRun> runs{{{}, 10, 0.030}, {{}, 10, 0.012}, {{}, 10, 0.004}};
   using Chosen = std::vector<std::size_t>;
-  EXPECT_EQ(choose_passes(runs, 100, 0.005, 3), (Chosen{0, 0, 1})) << "30, 10.5 and then 3.7 um; 12 and then 4.2 um";
+  EXPECT_EQ(choose_passes(runs, 100, 0.005, 3), (Chosen{0, 0, 1})) << "30, 7.5 and then 1.9 um; 12 and then 3 um";
   EXPECT_EQ(choose_passes(runs, 20, 0.005, 3), (Chosen{0, 1})) << "the worst one first";
   EXPECT_EQ(choose_passes(runs, 100, 0, 2), (Chosen{0, 0, 1, 1, 2, 2}));
 }
