@@ -19,8 +19,8 @@
 #include "machine/machine.h"
 #include "machine/machine_presets.h"
 #include "machine/material_presets.h"
-#include "nc/cutter_radii.h"
 #include "nc/program.h"
+#include "nc/tool_names.h"
 #include "report/job_proposal.h"
 
 namespace camber::cli {

@@ -15,8 +15,8 @@
 #include "kinematics/offset_check.h"
 #include "kinematics/program_joints.h"
 #include "machine/machine_presets.h"
-#include "nc/cutter_radii.h"
 #include "nc/language.h"
+#include "nc/tool_names.h"
 
 namespace camber::kinematics {
 namespace {

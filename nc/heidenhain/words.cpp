@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "nc/cutter_radii.h"
 #include "nc/heidenhain/klartext.h"
 #include "nc/mode_words.h"
 

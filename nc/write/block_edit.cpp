@@ -1,6 +1,7 @@
-#include "nc/write/block_edit.h"
-
+#include <algorithm>
 #include <cctype>
+
+#include "nc/write/five_axis_text.h"
 
 namespace camber::nc {
 

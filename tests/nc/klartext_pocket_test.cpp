@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "nc/cutter_radii.h"
+#include "nc/tool_names.h"
 #include "tests/nc/nc_text.h"
 
 namespace camber::nc {
@@ -52,7 +52,8 @@ Cut cut_of(const PocketCase& p, const Interpretation& moves) {
   for (const Move& m : moves.moves) {
     if (m.kind != MoveKind::linear && m.kind != MoveKind::arc) continue;
     if (m.arc != Move::kNoArc) out.turned_rad += moves.arcs[m.arc].sweep_rad;
-    const int n = std::max(1, static_cast<int>(length_mm(moves, m) / kStep_mm));
+    const int least = m.arc == Move::kNoArc ? 1 : 24;  // small circles too are round
+    const int n = std::max(least, static_cast<int>(length_mm(moves, m) / kStep_mm));
     for (int i = 0; i <= n; ++i) {
       const Vec3 d = point_at(moves, m, static_cast<double>(i) / n) - middle;
       out.points.emplace_back(c * d.x() + s * d.y(), -s * d.x() + c * d.y(), d.z());
