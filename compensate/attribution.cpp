@@ -140,8 +140,7 @@ class Places {
   /// The nominal sweep is that of a cutter which is fluted all the way: a row far below passes on the same surface.
   bool flutes_reach(const ShiftPath::PointInterval& place, const removal::SurfacePoint& p) const {
     const ToolAt at = tool_at(place, path_, job_, given_);
-    return !at.tool || !at.tool->flute_length_mm ||
-           (p.place_mm - at.tip_mm).dot(at.axis) <= *at.tool->flute_length_mm;
+    return !at.tool || !at.tool->flute_length_mm || (p.place_mm - at.tip_mm).dot(at.axis) <= *at.tool->flute_length_mm;
   }
   std::optional<ShiftPath::PointInterval> find(const nc::MoveMap::MovePlace& at) const {
     if (!path_.contains(at.move) || !given_.moves_in_part().moves[at.move].editable) return std::nullopt;

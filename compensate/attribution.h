@@ -52,10 +52,10 @@ double foreign_fraction(const Observed& observed);
 
 /// A point belongs to the stamp that cut the machined surface there; where nothing did, or the stamp of the nominal
 /// sweep is of another row and material is left, to that one, which should have removed it, if the target is the given
-/// program's own (`own_target`: Target::stamps; else empty) and its flutes reach there. `map`: from the emitted program's moves to those of
-/// `path`. `bending` (one per stamp of the nominal path, or empty: no hidden points): see expected.h. `first_cuts` (one
-/// per move of `given`, or empty): moves that are cut again; what they cut last counts as not cut, and belongs to the run that cuts again where no
-/// stamp of the nominal sweep does.
+/// program's own (`own_target`: Target::stamps; else empty) and its flutes reach there. `map`: from the emitted
+/// program's moves to those of `path`. `bending` (one per stamp of the nominal path, or empty: no hidden points): see
+/// expected.h. `first_cuts` (one per move of `given`, or empty): moves that are cut again; what they cut last counts as
+/// not cut, and belongs to the run that cuts again where no stamp of the nominal sweep does.
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,

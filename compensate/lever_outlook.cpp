@@ -14,9 +14,9 @@
 namespace camber::compensate {
 namespace {
 
-constexpr double kPays = 0.1;    // of the 95th percentile
-constexpr double kLongest = 2;   // of the given machine time, in addition
-constexpr double kWanted = 0.9;  // of the tolerance
+constexpr double kPays = 0.1;        // of the 95th percentile
+constexpr double kLongest = 2;       // of the given machine time, in addition
+constexpr double kWanted = 0.9;      // of the tolerance
 constexpr double kShortest = 0.005;  // of the given machine time: what takes less is what the shifts do
 
 /// The best round's observations, and what the best shifts leave of them.
@@ -58,8 +58,8 @@ std::optional<LeverOutlook> of_lower_feeds(const Task& task, const State& state,
   check_feeds(program, state.active->compensated, unusable);
   if (!unusable.all().empty()) return std::nullopt;
   ShiftPath path = left.path;
-  const std::vector<double> least = least_feeds(path, program.moves_in_part(), task.job.machine,
-                                                task.job.compensation.min_feed_percent / 100);
+  const std::vector<double> least =
+      least_feeds(path, program.moves_in_part(), task.job.machine, task.job.compensation.min_feed_percent / 100);
   FeedLever lever(path, program, !std::isinf(task.spacing_mm()), least);
   const FeedChoice choice =
       lever.choose(path, left.of_path, left.mm, kLongest * task.given.time_s, kWanted * task.tolerance_mm());

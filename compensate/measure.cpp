@@ -178,7 +178,8 @@ std::vector<Observation> observe_given(const Task& task, Version& version, Trial
   given.observed.reach = reach_of(version.path, task.setup->program.moves_in_part(), given.observed, given.surface,
                                   task.setup->own_stamps());
   // Rows cut each other's surface where a part has sprung back, and what is seen of them is right.
-  if (!task.job.workpiece && foreign_fraction(given.observed) > kForeign) return expect_hidden_rows(task, version, given);
+  if (!task.job.workpiece && foreign_fraction(given.observed) > kForeign)
+    return expect_hidden_rows(task, version, given);
   return {};
 }
 

@@ -30,9 +30,9 @@ std::vector<PassRun> pass_runs(const simulate::SimulatedProgram& given, const st
                                const ShiftPath& path, std::span<const Observation> observations,
                                std::span<const double> left_mm);
 
-/// What one more cut is expected to leave of the error that no shift removes. The edges of a thinner chip are in the cut
-/// over a shorter way, so that a part that yields springs back by less: on samples/22-thin-wall the foot of a level,
-/// which the flutes pass again, keeps a quarter of it.
+/// What one more cut is expected to leave of the error that no shift removes. The edges of a thinner chip are in the
+/// cut over a shorter way, so that a part that yields springs back by less: on samples/22-thin-wall the foot of a
+/// level, which the flutes pass again, keeps a quarter of it.
 inline constexpr double kLeftByCut = 0.25;
 
 /// How often a run may be cut before its last cut: a rigid part is right after the second one.

@@ -21,8 +21,8 @@ struct SecondCutVersion {
   bool too_slow = false;               ///< runs were left out for want of time
 };
 
-/// The given program with the chosen runs cut again, as often as they are chosen, within `allowed_s` of machine time. The path of `given` has the
-/// shifts of the first cuts afterwards.
+/// The given program with the chosen runs cut again, as often as they are chosen, within `allowed_s` of machine time.
+/// The path of `given` has the shifts of the first cuts afterwards.
 SecondCutVersion version_with(const Task& task, Version& given, const std::vector<PassRun>& runs,
                               std::vector<std::size_t> chosen, double allowed_s);
 

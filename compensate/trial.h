@@ -34,8 +34,8 @@ struct Trial {
   std::vector<double> total_mm;  ///< against the part's mesh, one per point; empty without a mesh
   int static_rounds = 0;
   std::size_t unsettled = 0;
-  bool all_valid = true;               ///< the model holds everywhere (simulate/validity.h)
-  double chip_mm3 = 0, stock_mm3 = 0;  ///< volume of the chips and volume lost by the stock
+  bool all_valid = true;                                    ///< the model holds everywhere (simulate/validity.h)
+  double chip_mm3 = 0, stock_mm3 = 0;                       ///< volume of the chips and volume lost by the stock
   std::shared_ptr<const simulate::PartSurvey> part_yields;  ///< null: the part is rigid
   Observed observed;
 

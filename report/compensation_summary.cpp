@@ -335,9 +335,9 @@ std::string passes_text(const compensate::CompensationResult& c, int cuts) {
   if (count == 0) return {};
   if (count > kShown) fmt::format_to(std::back_inserter(out), " and {} more runs", count - kShown);
   const double left_um = 1000 * c.passes.allowance_mm;
-  const std::string head = cuts == 2
-                               ? fmt::format("cut twice, the first cut leaving {:.0f} um: lines", left_um)
-                               : fmt::format("cut {} times, the cuts before the last leaving {:.0f} um: lines", cuts, left_um);
+  const std::string head =
+      cuts == 2 ? fmt::format("cut twice, the first cut leaving {:.0f} um: lines", left_um)
+                : fmt::format("cut {} times, the cuts before the last leaving {:.0f} um: lines", cuts, left_um);
   return head + out + " of the given program\n";
 }
 

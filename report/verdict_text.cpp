@@ -45,7 +45,8 @@ std::string too_deep_sentence(const compensate::Depth& depth, double limit_um) {
 }
 
 std::string unused_sentence(const compensate::LeverOutlook& o, double given_s) {
-  const char* of = o.lever == machine::Lever::passes ? "second cuts (lever \"passes\")" : "lower feeds (lever \"feed\")";
+  const char* of =
+      o.lever == machine::Lever::passes ? "second cuts (lever \"passes\")" : "lower feeds (lever \"feed\")";
   return fmt::format("{} are expected to leave {:.1f} um (95th percentile) for {:.1f} s more ({:+.0f} %)", of, o.p95_um,
                      o.extra_s, given_s > 0 ? 100 * o.extra_s / given_s : 0);
 }

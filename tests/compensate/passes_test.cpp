@@ -113,7 +113,8 @@ TEST(Passes, RunsStandAsOftenAsTheyAreChosen) {
 
   std::vector<Observation> observations(3);
   for (std::size_t i = 0; i < 3; ++i) observations[i].place = path.find(found[i].run.first_move, 0.5);
-  const std::vector<double> left = left_after_passes_mm(found, chosen, path, observations, std::vector{0.01, 0.01, 0.01});
+  const std::vector<double> left =
+      left_after_passes_mm(found, chosen, path, observations, std::vector{0.01, 0.01, 0.01});
   EXPECT_DOUBLE_EQ(left[0], 0.01);
   EXPECT_DOUBLE_EQ(left[1], 0.01 * kLeftByCut * kLeftByCut);
   EXPECT_DOUBLE_EQ(left[2], 0.01 * kLeftByCut);

@@ -204,7 +204,9 @@ double stands_at(const Stands& stands, double z) {
 
 Stands after_cuts_mm(const Scene& s, double x, const std::vector<double>& stands_off_mm) {
   Stands stands(static_cast<std::size_t>(kLevel / kStandsStep_mm) + 1, kAllowance);
-  const auto mean = [](const Stands& v) { return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size()); };
+  const auto mean = [](const Stands& v) {
+    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+  };
   for (const double off : stands_off_mm) {
     const Stands before = stands;
     const test::CantileverPlate plate = s.plate(x, std::max(0.0, off), mean(before));
