@@ -1,6 +1,7 @@
 #include "compensate/second_cuts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -28,15 +29,19 @@ std::vector<std::size_t> without_run_at(const std::vector<PassRun>& runs, std::v
   return chosen;
 }
 
-/// Removes some of the cuts before which the least error is left. `chosen`: ascending.
-std::vector<std::size_t> without_least(const std::vector<PassRun>& runs, const std::vector<std::size_t>& chosen) {
+/// Removes cuts before which the least error is left: as many as take the time that is too much, if they take the mean
+/// of all, but no more than a tenth. `chosen`: ascending; they take `times_too_long` of the time that they may.
+std::vector<std::size_t> without_least(const std::vector<PassRun>& runs, const std::vector<std::size_t>& chosen,
+                                       double times_too_long) {
   std::vector<std::pair<double, std::size_t>> before_mm;  // what is left before each cut, and its run
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const bool again = i > 0 && chosen[i] == chosen[i - 1];
     before_mm.emplace_back(again ? kLeftByCut * before_mm.back().first : runs[chosen[i]].left_mm, chosen[i]);
   }
   std::ranges::stable_sort(before_mm, [](const auto& a, const auto& b) { return a.first > b.first; });
-  before_mm.resize(chosen.size() - (chosen.size() + kDropped - 1) / kDropped);
+  const auto count = static_cast<double>(chosen.size());
+  const auto over = static_cast<std::size_t>(std::max(1.0, std::ceil(count - count / times_too_long)));
+  before_mm.resize(chosen.size() - std::min(over, (chosen.size() + kDropped - 1) / kDropped));
   std::vector<std::size_t> out;
   for (const auto& [left, run] : before_mm) out.push_back(run);
   std::ranges::sort(out);
@@ -151,7 +156,8 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
     if (made.feed.time_s > allowed_s) {
       out.too_slow = true;
       if (!task.budget_percent()) return out;  // all of them within the next step of time
-      chosen = without_least(runs, chosen);
+      const double given_s = program.feed.time_s;
+      chosen = without_least(runs, chosen, (made.feed.time_s - given_s) / std::max(allowed_s - given_s, 1e-9));
       continue;
     }
     if (const auto block = block_behind_collision(job, made, repeated.text, task.setup->target.blank)) {
