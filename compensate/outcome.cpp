@@ -9,9 +9,9 @@
 
 #include "compensate/fit_shift.h"
 #include "compensate/judge.h"
-#include "compensate/lever_outlook.h"
 #include "compensate/pass_before.h"
 #include "compensate/propose.h"
+#include "compensate/second_cuts.h"
 #include "simulate/verdict.h"
 
 namespace camber::compensate {

@@ -58,7 +58,7 @@ class BlockEdit {
   void add_feed_word(const std::string& word);
   /// In front of all words but N.
   void add_code(const std::string& word);
-  /// As find() and replace(), or add().
+  /// Replaces the word with the letter, or adds it where there is none.
   void set(char letter, const std::string& number);
 
   bool changed() const { return !changes_.empty() || !added_.empty() || !added_feed_.empty(); }
