@@ -56,6 +56,9 @@ machine::Job with_levers(const machine::Job& job, const std::vector<std::string>
     diagnostics.add({Severity::error, {job.path, 0, 0}, "--levers: " + message, "value-choice", {}});
   diagnostics.throw_if_errors();
   out.compensation.levers = read.levers;
+  // The job's budget is for the job's levers.
+  if (!out.compensation.has(machine::Lever::feed) && !out.compensation.has(machine::Lever::passes))
+    out.compensation.time_budget_percent.reset();
   return out;
 }
 

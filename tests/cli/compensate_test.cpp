@@ -95,6 +95,8 @@ TEST(CompensateCommand, TakesLeversByNameAndSaysWhatIsInReachFirst) {
   const auto idle = run_camber(folder, "compensate job.toml -o b.nc --levers shift --time-budget 5");
   EXPECT_EQ(idle.status, 1);
   EXPECT_NE(idle.err.find("a time budget of 5 % has no lever to use it"), std::string::npos) << idle.err;
+  write_job(folder, "time_budget_percent = 20\n");  // of the job's levers, not of those on the command line
+  EXPECT_EQ(run_camber(folder, "compensate job.toml -o b.nc --levers shift").status, 0);
 }
 
 TEST(CompensateCommand, NothingIsWrittenWhereNothingIsBetter) {
