@@ -49,7 +49,7 @@ PeriodMap::PeriodMap(std::span<const Mode> modes, const Cut& cut, double speed_r
     }
     history_ = static_cast<int>(std::ceil(longest)) + 2;  // two more for the cubic between knots
   }
-  place_.resize(static_cast<std::size_t>(history_ + intervals_ + 1));
+  place_.resize(static_cast<std::size_t>(history_) + static_cast<std::size_t>(intervals_) + 1);
 }
 
 /// The answer of a mode to a force that goes straight from one knot to the next. Along the mode
