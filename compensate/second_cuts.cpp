@@ -46,6 +46,7 @@ std::vector<std::size_t> without_least(const std::vector<PassRun>& runs, const s
   const auto over = static_cast<std::size_t>(std::max(1.0, std::ceil(count - count / times_too_long)));
   before_mm.resize(chosen.size() - std::min(over, (chosen.size() + kDropped - 1) / kDropped));
   std::vector<std::size_t> out;
+  out.reserve(before_mm.size());
   for (const auto& [left, run] : before_mm) out.push_back(run);
   std::ranges::sort(out);
   return out;
