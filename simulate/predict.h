@@ -132,8 +132,8 @@ struct PredictOptions {
   bool contacts = true;
   std::optional<std::size_t> turn_from;  ///< first stamp of a turn to keep in Prediction::cut.turn
   double chip_ratio = 0;                 ///< see CutOptions
-  /// Of a program with the same stretches (PartSurvey::fits), to be used instead of Target::part_yields; empty: that
-  /// one, or one of the program's own path where its stretches are others.
+  /// The survey of a program with the same stretches (PartSurvey::fits), to be used instead of Target::part_yields;
+  /// empty: that one, or one of the program's own path where its stretches are others.
   std::shared_ptr<const PartSurvey> part_yields{};
   std::function<void(double)> progress;
   std::function<void()> surface_read;  ///< called when Target::surface is no longer needed
