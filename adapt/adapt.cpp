@@ -6,7 +6,6 @@
 
 #include "adapt/adapter.h"
 #include "adapt/feed_chooser.h"
-#include "simulate/chatter.h"
 #include "simulate/verdict.h"
 
 namespace camber::adapt {
@@ -118,7 +117,7 @@ ObservedLoads Adapter::predict(const FeedCandidate& candidate, std::vector<std::
     p.holes.surface_mm2 = 1;  // the surface is not judged
   }
   if (settings_.limits.chatter_margin)
-    chatter_ = by_surface_ ? p.chatter : simulate::find_chatter(job_, candidate.program, p.cut.loads);
+    chatter_ = by_surface_ ? p.chatter : simulate::find_chatter(job_, candidate.program, p.cut.loads, depths_);
   doubts = simulate::doubts(job_, candidate.program, p);
   if (!by_load()) return {};
   return observe({job_, candidate.program, candidate.map, p.cut.loads, p.surface}, *cells_, loads_);

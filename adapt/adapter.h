@@ -10,6 +10,7 @@
 #include "adapt/feed_cells.h"
 #include "adapt/feed_chooser.h"
 #include "adapt/observed_loads.h"
+#include "simulate/chatter.h"
 #include "simulate/setup.h"
 
 namespace camber::adapt {
@@ -97,6 +98,7 @@ class Adapter {
   std::vector<double> peaks_before_;  ///< by limit
   std::shared_ptr<FeedCandidate> best_;
   Verdict verdict_;
+  simulate::CriticalDepths depths_;
   simulate::ChatterMargins chatter_, best_chatter_;
   int predictions_ = 0;
 };

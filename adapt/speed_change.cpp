@@ -121,8 +121,9 @@ class SpeedWriter {
 std::vector<SpeedChange> find_speed_changes(const machine::Job& job, const simulate::SimulatedProgram& program,
                                             std::span<const simulate::StampLoad> loads) {
   const double limit = *job.adapt->limits.chatter_margin;
+  simulate::CriticalDepths depths;
   std::vector<SpeedChange> out;
-  for (const simulate::ChatterOperation& o : simulate::find_chatter(job, program, loads).operations) {
+  for (const simulate::ChatterOperation& o : simulate::find_chatter(job, program, loads, depths).operations) {
     SpeedChange c{.tool = o.tool,
                   .before_rpm = o.speed_rpm,
                   .after_rpm = o.speed_rpm,

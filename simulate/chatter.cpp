@@ -5,12 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dynamics/stability_table.h"
 #include "dynamics/tool_modes.h"
 #include "simulate/passage_cut.h"
 #include "simulate/stable_speed.h"
@@ -34,7 +32,7 @@ std::vector<double> speeds_about(const machine::Job& job, double rpm, int count)
 
 /// What is known of one tool at one speed.
 struct ToolAtSpeed {
-  std::unique_ptr<StabilityTable> table;
+  StabilityTable* table = nullptr;
   ChatterOperation operation;
   bool any_invalid = false;
   PassageCut worst;
@@ -42,8 +40,9 @@ struct ToolAtSpeed {
 
 class ChatterSearch {
  public:
-  ChatterSearch(const machine::Job& job, const SimulatedProgram& program, std::span<const StampLoad> loads)
-      : job_(job), program_(program), loads_(loads) {}
+  ChatterSearch(const machine::Job& job, const SimulatedProgram& program, std::span<const StampLoad> loads,
+                CriticalDepths& depths)
+      : job_(job), program_(program), loads_(loads), depths_(depths) {}
 
   ChatterMargins run() {
     found_.passages.resize(loads_.size());
@@ -74,17 +73,10 @@ class ChatterSearch {
     ToolAtSpeed& t = tools_[{tool, rpm, upright}];
     if (t.table) return t;
     t.operation.tool = tool, t.operation.speed_rpm = rpm;
-    t.table = std::make_unique<StabilityTable>(table_at(tool, rpm, upright));
+    t.table = &depths_.at(job_, tool, rpm, upright);
     t.operation.measured = !job_.tools.at(tool).modes.empty();
     in_order_.push_back(&t);
     return t;
-  }
-
-  StabilityTable table_at(int number, double rpm, bool upright) {
-    const machine::Tool& tool = job_.tools.at(number);
-    auto& own = modes_[number];
-    if (own.empty()) own = dynamics::modes_of(tool);
-    return stability_table(job_, tool, own, rpm, upright);
   }
 
   std::size_t line_of(std::size_t stamp) const {
@@ -133,7 +125,7 @@ class ChatterSearch {
   const machine::Job& job_;
   const SimulatedProgram& program_;
   std::span<const StampLoad> loads_;
-  std::map<int, std::vector<machine::Mode>> modes_;  ///< by tool
+  CriticalDepths& depths_;
   std::map<std::tuple<int, double, bool>, ToolAtSpeed> tools_;
   std::vector<ToolAtSpeed*> in_order_;
   ChatterMargins found_;
@@ -148,9 +140,19 @@ std::string cure(const ChatterOperation& o) {
 
 }  // namespace
 
-ChatterMargins find_chatter(const machine::Job& job, const SimulatedProgram& program,
-                            std::span<const StampLoad> loads) {
-  return ChatterSearch(job, program, loads).run();
+dynamics::StabilityTable& CriticalDepths::at(const machine::Job& job, int number, double speed_rpm, bool upright) {
+  const auto known = tables_.find({number, speed_rpm, upright});
+  if (known != tables_.end()) return known->second;
+  const machine::Tool& tool = job.tools.at(number);
+  auto& own = modes_[number];
+  if (own.empty()) own = dynamics::modes_of(tool);
+  return tables_.emplace(std::tuple{number, speed_rpm, upright}, stability_table(job, tool, own, speed_rpm, upright))
+      .first->second;
+}
+
+ChatterMargins find_chatter(const machine::Job& job, const SimulatedProgram& program, std::span<const StampLoad> loads,
+                            CriticalDepths& depths) {
+  return ChatterSearch(job, program, loads, depths).run();
 }
 
 std::vector<dynamics::LobePoint> lobes_of(const machine::Job& job, const ChatterOperation& o) {

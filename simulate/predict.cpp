@@ -327,6 +327,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   Target out{std::move(blank), std::move(surface),
              std::move(part),  HoleStamps(removal::StampPath{{}, cutters.runs, {}}),
              std::move(whole), std::move(cutters.stamps)};
+  out.critical_depths = std::make_shared<CriticalDepths>();
   out.map.emplace(out.surface, cutters.places, out.blank, &out.solid());
   cutters = {};
   out.unseen_mm2 = out.map->unseen_mm2();
@@ -569,7 +570,7 @@ Prediction judge(const Job& job, const Target& target, const SimulatedProgram& p
   out.between = target.region.between;
   out.unseen_mm2 = target.unseen_mm2;
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
-  out.chatter = find_chatter(job, program, out.cut.loads);
+  out.chatter = find_chatter(job, program, out.cut.loads, *target.critical_depths);
   out.validity = find_validity(job, program, out.cut, out.chatter.invalid_stamps, out.surface);
   std::vector<double> error_um, deflection_um, contour_um, area;
   for (auto* values : {&error_um, &deflection_um, &contour_um, &area}) values->reserve(out.surface.size());

@@ -21,6 +21,7 @@
 namespace camber::simulate {
 
 using motion::SimulatedProgram;
+class CriticalDepths;  // simulate/chatter.h
 
 /// A place on a program's moves.
 struct PathFraction {
@@ -57,6 +58,7 @@ struct Target {
   SurfaceRegion region{};                           ///< what of the nominal surface is judged
   std::optional<removal::SurfaceMap> map{};         ///< points of the nominal surface, without marks
   std::shared_ptr<const PartSurvey> part_yields{};  ///< along the target's path; null: the part is rigid
+  std::shared_ptr<CriticalDepths> critical_depths;  ///< found so far, for the predictions against this target
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 
