@@ -56,8 +56,8 @@ double not_worse_mm(double given_mm, double tolerance_mm);
 /// Points of the judged surface whose error exceeds not_worse_mm.
 struct WorsePlaces {
   std::size_t points = 0;
-  double area_fraction = 0;  ///< of the judged surface
-  double max_um = 0;         ///< by which a point is worse than given at most
+  double area_fraction = 0;  ///< fraction of the judged surface
+  double max_um = 0;         ///< largest amount by which the error of a point exceeds the given one
   double p999_um = 0;        ///< excess over not_worse_mm that no more than a thousandth of the surface has
 };
 

@@ -47,7 +47,7 @@ using motion::moved_ranges;
 
 /// A program whose path is shifted, and what its trials need beside the path.
 struct ShiftedProgram {
-  machine::Job job;  ///< with operations as lines of this program
+  machine::Job job;  ///< the job, with its operations as lines of this program
   std::shared_ptr<const simulate::SimulatedProgram> program;
   const simulate::Target* target = nullptr;  ///< the job's; outlives the object
   bool own_target = true;                    ///< see simulate::Setup
