@@ -6,8 +6,8 @@
 //
 // Input is a job whose program has been read, timed and checked (simulate/setup.h). Each round has these steps:
 //
-// 1. attribution   finds, for every point of the surface, the place on the path that generated it; hidden_rows and
-//                  expected stand in where a neighbouring row has cut that place away.
+// 1. attribution   finds, for every point of the surface, the place on the path that generated it; hidden_rows gives
+//                  the expected error where a neighbouring row has cut that place away.
 // 2. row_form      subtracts what keeps the same form across a row (the bow of a ball), which no shift removes.
 // 3. fit_shift     fits the shifts of the path nodes (shift_path) to the errors by least squares, smoothly along the
 //                  path and from row to row (row_links), divided by the local sensitivity (sensitivity: a deeper cut

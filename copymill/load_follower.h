@@ -139,7 +139,7 @@ class LoadRule {
   /// Returns the ratio of felt to expected load.
   double hardness() const { return hardness_; }
   /// Notes that a place ahead allows no more than this feed; infinite: nothing ahead binds. For the log: keeping it is
-  /// up to the motion (copymill/feed_motion.h).
+  /// up to the motion (copymill/runner.h).
   void note_ahead(double t_s, const Vec3& place_mm, double feed_mm_per_s);
 
   const std::vector<Change>& log() const { return log_; }

@@ -124,7 +124,7 @@ double angle_between(const Vec3& a, const Vec3& b);
 inline constexpr double kAlong = 0.3;
 double error_share(double angle_rad);
 
-/// Returns the share of the error that the axes leave on the surface (lag_error.h), squared: a turn leaves as much
+/// Returns the share of the error that the axes leave on the surface (LagError), squared: a turn leaves as much
 /// however it is spread along the path, and the square spreads it.
 double lag_share(double error_mm, const ToolShape& tool);
 

@@ -62,7 +62,7 @@ struct PostureFigures {
   /// Deflection normal to the part per newton, mean over the way: lateral compliance at the tip times error_share().
   double compliance_um_per_N = 0;
   /// Error that the following errors of the axes leave on the surface: mean magnitude over the way, at the feed that
-  /// the rotary axes allow (lag_error.h).
+  /// the rotary axes allow (LagError).
   double lag_um = 0;
   /// Expected form error, mean magnitude over the way: compliance_um_per_N times the force of an edge at the feed per
   /// tooth of the first cut (posture.cpp, kOrdinaryChip_mm), and lag_um.
