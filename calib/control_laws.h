@@ -19,7 +19,7 @@ struct TriedLaw {
 /// Accelerations of x, y, z in mm/s^2 and of a, b, c in degrees/s^2; 0: the axis rests.
 using Accelerations = std::array<double, 6>;
 
-/// What the commands of the traces show (traced_acceleration.h).
+/// What the commands of the traces show (traced_motion.h).
 struct TracedAccelerations {
   Accelerations highest{};
   std::array<FittedValue, 6> held{};  ///< limits that ramps keep; 0: none

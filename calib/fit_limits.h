@@ -52,7 +52,7 @@ struct LimitParameter {
   double usual = 0;  ///< of a share: what controls have
   FittedValue fitted;
   bool determined = false;  ///< determined by the data
-  /// `fitted` was read in the commands of the traces (traced_acceleration.h) and stays.
+  /// `fitted` was read in the commands of the traces (traced_motion.h) and stays.
   bool from_ramps = false;
   bool acts = false;     ///< it changes some time
   bool assumed = false;  ///< kept at `usual`, since the times tell it only together with others

@@ -35,10 +35,10 @@ struct Observed {
   }
 };
 
-/// The place that makes the point on the nominal path; nothing where that is another program's, or may not be shifted.
+/// Returns the place that makes the point on the nominal path; nothing where that is of another program or fixed.
 std::optional<ShiftPath::PointInterval> owner_place(const ShiftPath& path, const machine::Job& job,
                                                     const simulate::Setup& given, const removal::SurfacePoint& point);
-/// Puts an observation of `point` to a place of the path.
+/// Adds an observation of `point` at a place of the path.
 void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPath::PointInterval& place,
                const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given);
 
@@ -47,15 +47,15 @@ std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& give
                            std::span<const removal::SurfacePoint> surface,
                            std::span<const simulate::PathFraction> own_target);
 
-/// Area of the judged surface which one row makes on the nominal path and a neighbouring one has cut, over all of it.
+/// Returns the fraction of the judged surface that one row makes on the nominal path and a neighbouring one has cut.
 double foreign_fraction(const Observed& observed);
 
-/// A point belongs to the stamp that cut the machined surface there; where nothing did, or the stamp of the nominal
-/// sweep is of another row and material is left, to that one, which should have removed it, if the target is the given
-/// program's own (`own_target`: Target::stamps; else empty) and its flutes reach there. `map`: from the emitted
-/// program's moves to those of `path`. `bending` (one per stamp of the nominal path, or empty: no hidden points): see
-/// expected.h. `first_cuts` (one per move of `given`, or empty): moves that are cut again; what they cut last counts as
-/// not cut, and belongs to the run that cuts again where no stamp of the nominal sweep does.
+/// Attributes a point to the stamp that cut the machined surface there. Where none did, or material is left and the
+/// stamp of the nominal sweep is of another row, the point belongs to that stamp, which should have removed it, if the
+/// target is the given program's own (`own_target`: Target::stamps; else empty) and its flutes reach there. `map`: from
+/// the emitted program's moves to those of `path`. `bending` (one per stamp of the nominal path, or empty: no hidden
+/// points): see hidden_rows.h. `first_cuts` (one per move of `given`, or empty): moves that are cut again; what they
+/// cut last counts as not cut, and belongs to the run that cuts again where no stamp of the nominal sweep does.
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
                  std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,

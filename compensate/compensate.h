@@ -6,8 +6,8 @@
 //
 // Input is a job whose program has been read, timed and checked (simulate/setup.h). Each round has these steps:
 //
-// 1. attribution   finds, for every point of the surface, the place on the path that generated it; hidden_rows and
-//                  expected stand in where a neighbouring row has cut that place away.
+// 1. attribution   finds, for every point of the surface, the place on the path that generated it; hidden_rows gives
+//                  the expected error where a neighbouring row has cut that place away.
 // 2. row_form      subtracts what keeps the same form across a row (the bow of a ball), which no shift removes.
 // 3. fit_shift     fits the shifts of the path nodes (shift_path) to the errors by least squares, smoothly along the
 //                  path and from row to row (row_links), divided by the local sensitivity (sensitivity: a deeper cut
@@ -78,13 +78,13 @@ struct RepeatedRun {
   int cuts = 2;
 };
 
-/// What is expected before the rounds start.
+/// Expected error before the rounds start, um.
 struct Outlook {
   double given_p95_um = 0;       ///< judged error of the given program
   double achievable_p95_um = 0;  ///< the same where shifts take away all that they can
 };
 
-/// What of the given program is compensated, and against what it is judged.
+/// The part of the given program that is compensated, and the reference that it is judged against.
 struct Scope {
   Finishing finishing;
   std::vector<LineRole> lines;     ///< one per line of the given program
@@ -100,7 +100,7 @@ struct FormFigures {
   PlainFigures plain_before, plain_after;
   ErrorSplit split_before, split_after;
   Outlook outlook;
-  WorsePlaces worse;      ///< than given, of the emitted program
+  WorsePlaces worse;      ///< places of the emitted program with a greater error than in the given one
   double unseen_mm2 = 0;  ///< area of the nominal surface without a point
   /// Left out of the surface: see simulate::SurfaceRegion.
   double border_mm2 = 0, not_judged_mm2 = 0;
@@ -115,18 +115,18 @@ struct WrittenProgram {
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
 };
 
-/// What a lever that was not used is expected to bring.
+/// Expected effect of a lever that was not used.
 struct LeverOutlook {
   machine::Lever lever = machine::Lever::passes;
   double p95_um = 0;   ///< judged error that is expected to remain
-  double extra_s = 0;  ///< of machine time
+  double extra_s = 0;  ///< additional machine time
 };
 
-/// Whether the emitted program is good, and what keeps it from being better.
+/// Verdict on the emitted program, with the causes and limits that keep it from being better.
 struct CompensationVerdict {
   bool better = true;  ///< the round is better than the given program, or that is good, and within limits
   bool within_tolerance = false;
-  bool settled = true;  ///< every static solution of the first and the best round did
+  bool settled = true;  ///< every static solution of the first and the best round converged
   Stop stop = Stop::rounds;
   std::vector<CauseFigure> causes;   ///< causes of the remaining error, where it is over the tolerance
   std::vector<LeverOutlook> unused;  ///< levers that would bring more, where it is over the tolerance
@@ -142,18 +142,18 @@ struct SecondCuts {
   std::string text{};       ///< the program whose path was shifted, where runs are cut twice; else empty
 };
 
-/// What the passes before leave for the moves to compensate (pass_before.h).
+/// Stock that the passes before leave for the moves to compensate (pass_before.h).
 struct PassBefore {
-  double given_mm = 0, left_mm = 0;  ///< medians of the surface, of the given and of the emitted program
+  double given_mm = 0, left_mm = 0;  ///< median over the surface: with the given and with the emitted program
 };
 
 /// Depth into the part.
 struct Safety {
-  double depth_limit_um = 0;     ///< the job's, or default_depth_limit_um
-  bool own_depth_limit = false;  ///< the job gives one
-  Depth before, after;           ///< of compensated moves
-  Depth others;                  ///< of moves that are not compensated
-  Depth without_bending;         ///< of the emitted program
+  double depth_limit_um = 0;     ///< limit of the job, or default_depth_limit_um
+  bool own_depth_limit = false;  ///< the job gives the limit
+  Depth before, after;           ///< depth of the compensated moves
+  Depth others;                  ///< depth of the moves that are not compensated
+  Depth without_bending;         ///< depth of the emitted program cut by a rigid tool
   bool within_part = true;       ///< `after` is within the depth limit
 };
 
@@ -163,7 +163,7 @@ struct PathFigures {
   PathQuality quality;
   RowSteps row_steps;
   SurfaceSteps surface_steps;
-  double row_turn_rad = 0;  ///< between neighbouring rows of one sense, held like the angles between blocks
+  double row_turn_rad = 0;  ///< largest turn between neighbouring rows of one sense, bounded as angles between blocks
 };
 
 struct UncertaintyFigures {
@@ -196,7 +196,7 @@ struct CompensationResult {
   Surfaces surfaces;
 };
 
-/// Thrown where the given program lies beyond the model: there is nothing to compensate by. what() says why.
+/// Thrown where the given program is beyond the model, so that no error is known to compensate. what() says why.
 using camber::BeyondModel;
 
 struct CompensateOptions {
@@ -204,7 +204,7 @@ struct CompensateOptions {
   std::function<void(const Outlook&)> outlook{};  ///< called once, before the rounds
   std::size_t max_stock_crossings = 0;            ///< size of Surfaces::stock; 0: none
   bool keep_anyway = false;  ///< emit the round with the smallest error even if none is better than the given program
-  /// Instead of the job's.
+  /// Replaces the job's time budget.
   std::optional<double> time_budget_percent{};
   std::vector<double> recheck_voxels_mm{};    ///< predict both programs on these grids as well
   std::vector<ParameterGroup> uncertainty{};  ///< parameters for UncertaintyFigures::band

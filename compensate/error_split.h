@@ -48,7 +48,7 @@ std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const
 std::vector<double> left_by_shift_mm(const ShiftPath& path, std::span<const Observation> observations,
                                      const FitShiftOptions& options);
 
-/// Where a part of an error comes from.
+/// Cause of a part of an error; ErrorSplit has the meanings.
 enum class Cause { correctable, guard, bounded, limited, short_range, opposed, tip, bow, not_compensated };
 
 /// The error point by point, one per entry of Observed: which cause most of it has, and how much that is.

@@ -11,14 +11,14 @@ struct FeedUnit {
   std::size_t chain = 0;  ///< units of one chain follow each other along the path
   double length_mm = 0;
   double time_s = 0;         ///< time at the programmed feed; more than length / feed where the control is slower
-  double feed_mm_per_s = 0;  ///< programmed
-  double least = 1;          ///< lowest fraction of it
+  double feed_mm_per_s = 0;  ///< programmed feed
+  double least = 1;          ///< lowest fraction of the programmed feed
 };
 
 /// A piece of surface that a unit makes.
 struct FeedPoint {
   std::size_t unit = 0;
-  double error_mm = 0;  ///< magnitude that the best shift leaves, at the unit's present feed
+  double error_mm = 0;  ///< magnitude of the error that the best shift leaves at the unit's present feed
   double area_mm2 = 0;
 };
 
@@ -34,10 +34,10 @@ struct FeedChoice {
   double error_mm = 0;           ///< 95th percentile by the model
 };
 
-/// Fractions that are chosen from: 1, 0.85, 0.85^2 ... `least`. A unit takes none below its own least one.
+/// Returns the fractions to choose from: 1, 0.85, 0.85^2 ... `least`. A unit takes none below its own least one.
 std::vector<double> feed_levels(double least);
 
-/// Least 95th percentile of the error for no more than `budget_s` of extra time, or the least time for a 95th
+/// Finds the least 95th percentile of the error for at most `budget_s` of extra time, or the least time for a 95th
 /// percentile of `wanted_mm`, whichever is reached first:
 ///
 ///   sum_points area [ error(u) > tau ] + lambda ( sum_units time(u) + changes * 0.05 s ) -> min

@@ -24,12 +24,12 @@ class FeedLever {
   FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& given, bool splittable,
             std::span<const double> least);
 
-  /// Sets the feeds of `path` for the observations of its last prediction and `left_mm`, what the best shift would
-  /// leave of each. `budget_s`: of extra time.
+  /// Sets the feeds of `path` for the observations of its last prediction. `left_mm`: error that the best shift would
+  /// leave at each. `budget_s`: extra machine time.
   FeedChoice choose(ShiftPath& path, std::span<const Observation> observations, std::span<const double> left_mm,
                     double budget_s, double wanted_mm);
-  /// Changes the observations as the new feeds will, for the shift that goes with them. `before`: the fractions
-  /// that they were made with.
+  /// Changes the observations to those expected with the new feeds, for the shift that goes with them. `before`: the
+  /// fractions that they were made with.
   void apply_to(std::vector<Observation>& observations, const ShiftPath& path, std::span<const double> before) const;
   /// Learns from two predictions of the same surface, with their fractions and shifts, and from the extra time of the
   /// second.
@@ -45,9 +45,9 @@ class FeedLever {
   FeedModel model_;
 };
 
-/// The lowest fraction of the programmed feed for the piece of `path` that ends at each point: `least`; within 2 mm of
-/// path of a corner that the control passes more slowly, the fraction that it passes it with, but no less than half of
-/// `least`. The chip there is no thinner than the given program's. Stops do not count. `path` is one of `program`'s.
+/// Returns the lowest fraction of the programmed feed for the piece of `path` that ends at each point: `least`; within
+/// 2 mm of path of a corner that the control passes more slowly, the fraction at which it passes, but at least half of
+/// `least`. The chip there is no thinner than in the given program. Stops do not count. `path` is one of `program`'s.
 std::vector<double> least_feeds(const ShiftPath& path, const nc::Interpretation& program,
                                 const machine::Machine& machine, double least);
 

@@ -23,7 +23,7 @@ struct Finishing {
   std::vector<Operation> operations;
 };
 
-/// An operation that makes less of the surface than this is no finishing.
+/// Least fraction of the surface that a finishing operation makes.
 inline constexpr double kFinishingFraction = 0.05;
 
 /// Returns, of the moves that the job simulates, those that [compensation] operations names by tool, lines and

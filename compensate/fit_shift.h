@@ -25,11 +25,11 @@ struct Observation {
   double weight = 1;                   ///< weight of its area in the fit
   Vec3 from_centre_mm = Vec3::Zero();  ///< position from the centre of the cutter's corner (its tip, if that is sharp)
   bool at_tip = false;                 ///< on the axis of a round tip, where the cutting speed is almost zero
-  bool own = true;                     ///< the place is the one that cut it
-  bool foreign = false;                ///< made by one row on the nominal path, cut by another
+  bool own = true;                     ///< the place is the one that cut the surface
+  bool foreign = false;                ///< the surface belongs to one row on the nominal path and was cut by another
   bool above = false;                  ///< the place passes above the surface: see Observed::hidden
   bool opposed = false;                ///< generated at the same path position as an opposite surface
-  double form_mm = 0;  ///< further part of the error, the same across the row, that no shift is asked for
+  double form_mm = 0;  ///< further part of the error, the form across the row, that the fit leaves alone
   double bound_mm = std::numeric_limits<double>::infinity();  ///< magnitude that error and form together may reach
 };
 
@@ -39,7 +39,7 @@ struct FitShiftOptions {
   double max_shift_mm = 0.1;
   /// Factor on mu between each point of the path and the next; empty: 1.
   std::span<const double> stiffness{};
-  std::span<const RowLink> links{};          ///< between rows
+  std::span<const RowLink> links{};          ///< links between rows
   std::span<const double> link_stiffness{};  ///< one per link, as `stiffness`
   bool bounded = false;                      ///< Observation::bound_mm is kept
 };
@@ -48,7 +48,7 @@ struct FitShiftOptions {
 /// follow the scatter of its points.
 constexpr double smoothing_mm(double voxel_mm) { return std::max(0.2, 2.5 * voxel_mm); }
 
-/// Shifts that minimize
+/// Finds the shifts that minimize
 ///
 ///   sum w a (e / g + n . (s - s_old))^2 + mu integral |ds/dl|^2 dl + kappa integral |s|^2 dl
 ///     + mu sum_links l |s_a - s_b|^2 / d^2

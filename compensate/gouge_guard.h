@@ -21,7 +21,7 @@ class Guard {
   void clear();
   /// Adds lifts for points that are too deep; `depth_p999_mm`: depth that 99.9 % of the surface does not exceed.
   void learn(const Observed& observed, double depth_p999_mm);
-  /// Errors as the fit is to see them: what takes the lifts away, and nothing else.
+  /// Replaces the errors of a fit by those whose correction gives the lifts, and nothing else.
   void apply_to(std::vector<Observation>& observations) const;
 
  private:
@@ -33,8 +33,8 @@ class Guard {
   std::vector<Vec3> lift_mm_;   ///< lifts at the path's points
 };
 
-/// Adds to the path's shifts what takes the lifts (Guard::apply_to), as smooth as fit_shift makes it; the sum is cut to
-/// the largest shift. Returns at how many points it was.
+/// Adds the lifts (Guard::apply_to) to the path's shifts, as smooth as fit_shift makes them; the sum is cut to the
+/// largest shift. Returns the number of points at which it was cut.
 std::size_t fit_lifts(ShiftPath& path, std::span<const Observation> lifts, const FitShiftOptions& options);
 
 }  // namespace camber::compensate

@@ -28,12 +28,12 @@ class Rows {
   std::vector<std::size_t> chain_of_;  ///< one per point
 };
 
-/// Bending at the contact of every stamp of the nominal path under the force of the nominal chip, mm: one rigid
-/// prediction of that path.
+/// Returns the bending at the contact of every stamp of the nominal path under the force of the nominal chip, mm, by
+/// one rigid prediction of that path.
 std::vector<Vec3> nominal_bending(const machine::Job& job, const simulate::Setup& given,
                                   const std::function<void(double)>& progress);
 
-/// The error that `owner`, the place that makes the point on the nominal path, would leave there, mm:
+/// Returns the error that `owner`, the place that makes the point on the nominal path, would leave there, mm:
 ///
 ///   e = n . o + n . d
 ///
@@ -51,7 +51,7 @@ void scale_bending(const ShiftPath& path, const machine::Job& job, const simulat
                    const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
                    std::vector<Vec3>& bending);
 
-/// expected_error_mm of the given program at every point of the surface that has an owner.
+/// Returns expected_error_mm of the given program at every point of the surface that has an owner.
 std::vector<Observation> expected_errors(const ShiftPath& path, const machine::Job& job, const simulate::Setup& given,
                                          const Observed& observed, const std::vector<removal::SurfacePoint>& surface,
                                          std::span<const Vec3> bending);

@@ -23,13 +23,13 @@ std::size_t choose_round(std::span<const RoundFigures> rounds, double depth_limi
 /// the shifts as the fit has it; a round shows the c that they have in truth. The slope at t = 0 is that of the fit.
 class StepModel {
  public:
-  /// A step of the fraction `fraction` changed an error of `rms_um`, which could be corrected as `split` says, to
-  /// `new_rms_um`. Where nothing could be corrected, c stays.
+  /// Fits c to a step of `fraction` that changed an error of `rms_um`, correctable as `split` says, to `new_rms_um`.
+  /// Where nothing could be corrected, c stays.
   void learn(double rms_um, const ErrorSplit& split, double fraction, double new_rms_um);
 
-  /// Fraction at which m(t) is least; not over `greatest`.
+  /// Returns the fraction at which m(t) is least, at most `greatest`.
   double best_fraction(double greatest) const;
-  /// 2 t - c t^2: how much of R a step takes away; from 0 to 1.
+  /// Returns 2 t - c t^2, the fraction of R that a step removes, from 0 to 1.
   double effect(double fraction) const;
   /// sqrt(m(t)).
   double expected_rms_um(double rms_um, const ErrorSplit& split, double fraction) const;

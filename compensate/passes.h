@@ -13,7 +13,7 @@
 
 namespace camber::compensate {
 
-/// A run, what a second cut of it takes, and how much it could bring.
+/// A run, the machine time of a second cut, and the error that the cut could remove.
 struct PassRun {
   nc::CutRun run;
   double time_s = 0;   ///< time of the run and the way back
@@ -30,19 +30,19 @@ std::vector<PassRun> pass_runs(const simulate::SimulatedProgram& given, const st
                                const ShiftPath& path, std::span<const Observation> observations,
                                std::span<const double> left_mm);
 
-/// What one more cut is expected to leave of the error that no shift removes. The edges of a thinner chip are in the
-/// cut over a shorter way, so that a part that yields springs back by less: on samples/22-thin-wall the foot of a
-/// level, which the flutes pass again, keeps a quarter of it.
+/// Fraction that one more cut is expected to leave of the error that no shift removes. The edges of a thinner chip are
+/// in the cut over a shorter way, so that a yielding part springs back less: on samples/22-thin-wall the foot of a
+/// level, which the flutes pass again, keeps a quarter.
 inline constexpr double kLeftByCut = 0.25;
 
-/// How often a run may be cut before its last cut: a rigid part is right after the second one.
+/// Largest number of cuts of a run before its last one: a rigid part needs no more than two cuts in all.
 inline int most_passes(const machine::Job& job) { return job.workpiece ? 3 : 1; }
 
 /// Returns the indices of the runs to cut again, ascending, each as often as it is cut before its last cut, at most
 /// `most` times: that with the greatest error first, while it fits into `budget_s` and leaves more than `wanted_mm`.
 std::vector<std::size_t> choose_passes(std::span<const PassRun> runs, double budget_s, double wanted_mm, int most = 1);
 
-/// What is expected to be left of each observation once the chosen runs are cut again.
+/// Returns the error that is expected to remain at each observation once the chosen runs are cut again, mm.
 std::vector<double> left_after_passes_mm(std::span<const PassRun> runs, std::span<const std::size_t> chosen,
                                          const ShiftPath& path, std::span<const Observation> observations,
                                          std::span<const double> left_mm);

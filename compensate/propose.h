@@ -12,32 +12,32 @@ namespace camber::compensate {
 
 /// A round before its prediction.
 struct PlannedRound {
-  std::shared_ptr<const Trial> from;  ///< trial whose error it goes by
-  std::shared_ptr<Trial> made;        ///< with its text only
+  std::shared_ptr<const Trial> from;  ///< trial whose error the shifts are fitted to
+  std::shared_ptr<Trial> made;        ///< the new trial; only its text is set
   Round round{};
   bool shows_gain = true;  ///< the change of the error shows the sensitivity
 };
 
 FitShiftOptions fit_options(const Task& task, std::span<const double> stiffness, std::span<const RowLink> links,
                             std::span<const double> link_stiffness);
-/// The path with all its points, by which errors are judged.
+/// Returns the options of a fit with all points of the path, by which errors are judged.
 FitShiftOptions fit_options(const Task& task, const Version& version);
 
-/// The errors that the next shifts are to take away. `guard`: null: without lifts.
+/// Returns the errors that the next shifts should remove. `guard`: null: without lifts.
 std::vector<Observation> wanted_of(const Task& task, const Version& version, const Observed& observed,
                                    const Guard* guard);
 
 /// May change the feeds of the path and the observations that the shifts are fitted to.
 using Prepare = std::function<void(std::vector<Observation>&)>;
 
-/// The text of new shifts of the active version, by the last trial's error, without its prediction.
+/// Fits new shifts of the active version to the last trial's error and emits their text; does not predict it.
 PlannedRound propose(const Task& task, State& state, double fraction, const Guard* guard, const Prepare& prepare = {});
 
-/// A lift must take this part off what the depth is over the limit.
+/// A lift must remove at least this fraction of the depth beyond the limit.
 inline constexpr double kGuardGain = 0.1;
 
-/// Asks for lifts until the shifts that follow are expected to keep the depth limit. False: no shift brings the surface
-/// nearer to it, as where the shifts are at the largest one.
+/// Asks for lifts until the shifts that follow are expected to keep the depth limit. Returns false if no shift brings
+/// the surface nearer to it, for instance because all shifts are at max_shift_mm.
 bool ask_for_lifts(const Task& task, State& state, Guard& guard, double deepest_um);
 
 }  // namespace camber::compensate

@@ -14,34 +14,33 @@
 
 namespace camber::compensate {
 
-/// Weighted by area over everything that the moves to compensate can reach; nothing else is left out but what the map
-/// cannot see.
+/// Figures weighted by area over all surface that the moves to compensate can reach and that the map can see.
 struct PlainFigures {
   removal::ErrorFigures error_um, deflection_um, contour_um;
   std::optional<removal::ErrorFigures> total_um;  ///< against the part's mesh
-  /// Of deflection_um, where the part yields.
+  /// Parts of deflection_um due to the tool and to the workpiece, where the workpiece yields.
   std::optional<removal::ErrorFigures> tool_um{}, part_um{};
-  double in_band_fraction = 0;  ///< of the area whose judged error is within tolerance or profile
+  double in_band_fraction = 0;  ///< fraction of the area whose judged error is within tolerance or profile
 };
 
-/// `observed`: of the same surface, with its reach. `total_mm`: one per point, or empty.
+/// `observed`: observations of the same surface, with their reach. `total_mm`: one per point, or empty.
 PlainFigures plain_figures(const std::vector<removal::SurfacePoint>& surface, const std::vector<double>& total_mm,
                            const Observed& observed, const machine::CompensationSettings& asked);
 
 /// The judged error: error_um, or deflection_um if the reference is the machine.
 const removal::ErrorFigures& judged_of(const PlainFigures& figures, machine::Reference reference);
 
-/// The 95th percentile is within tolerance_um; with profile_um: 95 % of the area is within the band.
+/// Returns whether the 95th percentile is within tolerance_um; with profile_um whether 95 % of the area is in the band.
 bool within_tolerance(const PlainFigures& figures, const machine::CompensationSettings& asked);
 
-/// The same of judged errors, um, each of an area.
+/// As above, for judged errors in um, each with its area.
 bool within_tolerance(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
                       const machine::CompensationSettings& asked);
 
-/// What the contour error of a piece of surface comes from (simulate/contour.h).
+/// Cause of the contour error of a piece of surface (simulate/contour.h).
 enum class ContourCause { none, lag, path_tolerance, corner_law };
-/// The part of the contour error that makes half or more of the error of the points with `cause`. `surface`: the same
-/// points.
+/// Returns the cause of the contour error that makes half or more of the error of the points with `cause`. `surface`:
+/// the same points.
 ContourCause contour_cause_of(Cause cause, const std::vector<PointCause>& points,
                               const std::vector<removal::SurfacePoint>& surface);
 
@@ -53,23 +52,23 @@ struct CauseFigure {
   Cause cause = Cause::correctable;
   double rms_um = 0;
   std::vector<ProgramLine> lines{};           ///< the worst ones, ascending
-  ContourCause contour = ContourCause::none;  ///< of what changes faster than a smooth shift can
-  std::vector<std::string> remedies{};        ///< that were not tried
+  ContourCause contour = ContourCause::none;  ///< cause of an error that changes faster than a smooth shift can
+  std::vector<std::string> remedies{};        ///< remedies that were not tried
 };
 
-/// Those that make a tenth of the mean square or more, the largest first, without remedies. `lines`: one per point of
-/// the surface.
+/// Returns the causes that make a tenth of the mean square or more, the largest first, without remedies. `lines`: one
+/// per point of the surface.
 std::vector<CauseFigure> causes_of(const ErrorSplit& split, const std::vector<PointCause>& points,
                                    const Observed& observed, const std::vector<ProgramLine>& lines);
 
-/// What a compensation has used.
+/// Levers and limits that a compensation has used.
 struct Tried {
-  bool rounds = false;  ///< they ended before max_rounds: one more was not worth it
+  bool rounds = false;  ///< the rounds ended before max_rounds: one more was not worth its prediction
   bool feeds = false, second_cuts = false;
   bool pass_before = true;  ///< false: there are passes before, and they were left as given
   std::vector<BindingLimit> limits{};
 };
-/// What may take a cause away and has not been tried.
+/// Returns the remedies of a cause that have not been tried.
 std::vector<std::string> remedies_of(const CauseFigure& cause, const Tried& tried);
 
 /// "line 12", "lines 12, 14 (15 as emitted)".

@@ -9,7 +9,7 @@
 
 namespace camber::compensate {
 
-/// Over which the form is taken to stay.
+/// Length of path over which the form is taken to stay the same.
 inline constexpr double kFormAlong_mm = 1.5;
 
 /// Finds what no shift removes but stays the same for millimetres along the path: of `left` (one per observation,
@@ -21,9 +21,9 @@ inline constexpr double kFormAlong_mm = 1.5;
 /// with weights that fall to 1/e in 1.5 mm along the path. A grid shows a row at a few places across, others every
 /// voxel; a shift that is fitted to the error less this form does not follow which ones.
 ///
-/// Where the grid shows many points across (n within 2 smoothing_mm of path: a wall) their mean
-/// is accurate enough, and a form that changes along the path would do harm: the form is less by 1 / (1 + (n / 40)^2).
-/// Where the surface faces more than one way (a wall and its floor, a corner) it is none. One per observation.
+/// Where the grid shows many points across (n within 2 smoothing_mm of path: a wall), their mean is accurate enough and
+/// a form that changes along the path would do harm: the form is multiplied by 1 / (1 + (n / 40)^2). Where the surface
+/// faces more than one way (a wall and its floor, a corner) the form is zero. Returns one value per observation.
 std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observation> observations,
                                 const std::vector<double>& left_mm, double smoothing_mm);
 

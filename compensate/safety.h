@@ -40,8 +40,8 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
 Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Reference reference, double others_mm2,
                double tolerance_um);
 
-/// Gouge depth of the emitted program cut by a rigid tool. Bounded by the largest shift and, where rows cross other
-/// rows, by the sum of their shifts.
+/// Returns the gouge depth of the emitted program cut by a rigid tool. It is bounded by the largest shift and, where
+/// rows cross other rows, by the sum of their shifts.
 Depth depth_without_bending(const machine::Job& job, const simulate::Target& target,
                             const simulate::SimulatedProgram& emitted, double tolerance_um);
 
@@ -49,15 +49,15 @@ using checks::check_travel;
 
 inline constexpr double kWorse_mm = 0.001;  ///< a place is worse if its error exceeds the given one by more than this
 
-/// Largest magnitude of the error that counts as no worse than `given_mm`: the given one and kWorse_mm, or the
+/// Returns the largest magnitude of the error that counts as no worse than `given_mm`: their sum with kWorse_mm, or the
 /// tolerance where that is larger.
 double not_worse_mm(double given_mm, double tolerance_mm);
 
 /// Points of the judged surface whose error exceeds not_worse_mm.
 struct WorsePlaces {
   std::size_t points = 0;
-  double area_fraction = 0;  ///< of the judged surface
-  double max_um = 0;         ///< by which a point is worse than given at most
+  double area_fraction = 0;  ///< fraction of the judged surface
+  double max_um = 0;         ///< largest amount by which the error of a point exceeds the given one
   double p999_um = 0;        ///< excess over not_worse_mm that no more than a thousandth of the surface has
 };
 

@@ -8,29 +8,29 @@
 
 namespace camber::compensate {
 
-/// The runs with what the best shifts leave of each. `given`: the version of the given program; its path has those
-/// shifts afterwards.
+/// Returns the runs with the error that the best shifts leave of each. `given`: the version of the given program, whose
+/// path has those shifts afterwards.
 std::vector<PassRun> runs_after_shifts(const Task& task, Version& given);
 
-/// A version that takes over from the given program what stays. `program`: its own, with the cuts of `repeated`.
+/// Makes a version from the given program. `program`: the program of the version, with the cuts of `repeated`.
 std::unique_ptr<Version> taken_over(const Task& task, const Version& given, const machine::Job& job,
                                     simulate::SimulatedProgram program, EarlierCuts repeated);
 
 struct SecondCutVersion {
   std::unique_ptr<Version> version{};  ///< null: none of the runs can be cut again
-  bool too_slow = false;               ///< runs were left out for want of time
+  bool too_slow = false;               ///< runs were left out because they would take too much time
 };
 
-/// The given program with the chosen runs cut again, as often as they are chosen, within `allowed_s` of machine time.
-/// The path of `given` has the shifts of the first cuts afterwards.
+/// Makes the given program with the chosen runs cut again, as often as they are chosen, within `allowed_s` of machine
+/// time. The path of `given` has the shifts of the first cuts afterwards.
 SecondCutVersion version_with(const Task& task, Version& given, const std::vector<PassRun>& runs,
                               std::vector<std::size_t> chosen, double allowed_s);
 
 // Levers that a compensation has not used, where the tolerance is missed on a part that yields
 
-/// Second cuts where no run is cut again, and lower feeds where no feed is changed, each for up to twice more machine
-/// time and where it is expected to take a tenth or more off the 95th percentile of the best round. No prediction is
-/// made: a cut once more leaves kLeftByCut, a lower feed what its model says.
+/// Returns second cuts where no run is cut again, and lower feeds where no feed is changed, each with up to 200 % more
+/// machine time, if it is expected to take a tenth or more off the 95th percentile of the best round. No prediction is
+/// made: one more cut leaves kLeftByCut, a lower feed what its model says.
 std::vector<LeverOutlook> unused_levers(const Task& task, const State& state);
 
 }  // namespace camber::compensate

@@ -18,7 +18,7 @@ struct ControlPoint {
   Vec3 place_mm = Vec3::Zero();
   Vec3 shift_mm = Vec3::Zero();
   double feed_fraction = 1;  ///< fraction of the programmed feed, on the piece that ends here
-  bool fixed = false;        ///< stays: end of a rapid, of another operation's move or of one that cannot be edited
+  bool fixed = false;        ///< not moved: end of a rapid, of another operation's move or of one that is not editable
   /// The piece that ends here runs along Z alone, a plunge or a retract, and gets no X and Y words: its shift across is
   /// that of the point before.
   bool plunge = false;
@@ -41,14 +41,14 @@ class ShiftPath {
   const std::vector<ControlPoint>& points() const { return points_; }
   const std::vector<Chain>& chains() const { return chains_; }
 
-  /// Between which points a place of the path lies: points()[lower] and points()[lower + 1].
+  /// The interval of points in which a place of the path lies: points()[lower] and points()[lower + 1].
   struct PointInterval {
     std::size_t lower = 0;
     double upper_fraction = 0;
   };
-  /// The move is one whose points may be shifted.
+  /// Returns whether the points of the move may be shifted.
   bool contains(std::uint32_t move) const { return move < first_of_move_.size() && first_of_move_[move] != kNone; }
-  /// `move` must be contained.
+  /// Requires a move that is contained.
   PointInterval find(std::uint32_t move, double fraction) const;
   Vec3 shift_at(const PointInterval& place) const;
   std::vector<Vec3> shifts() const;
@@ -56,9 +56,9 @@ class ShiftPath {
   /// Gives the points of plunges the shift across Z that they must have.
   void keep_plunges();
 
-  /// The moves whose points are shifted, or whose feed is another one. Points between the ends of a line are kept where
-  /// the path without them would stray by more than tolerance_mm; an arc stays one where one passes the shifted points
-  /// within it, else it becomes the fewest arcs that do.
+  /// Returns the moves whose points are shifted or whose feed is changed. Points between the ends of a line are kept
+  /// where the path without them would deviate by more than tolerance_mm. An arc stays one arc if that passes the
+  /// shifted points within the tolerance, else it becomes the fewest arcs that do.
   std::vector<nc::MoveEdit> edits(double tolerance_mm) const;
   /// Returns the path with lines split at the points that are kept (one flag per point) and nowhere else.
   std::vector<nc::MoveEdit> edits(const std::vector<bool>& kept, double tolerance_mm) const;
@@ -67,12 +67,12 @@ class ShiftPath {
   std::vector<bool> ends_of_moves() const;
   /// Keeps the points of lines at which the feed changes.
   void keep_feed_changes(std::vector<bool>& kept) const;
-  /// Keeps points of lines without which the shifted path would stray by more than tolerance_mm.
+  /// Keeps points of lines without which the shifted path would deviate by more than tolerance_mm.
   void keep_strays(double tolerance_mm, std::vector<bool>& kept) const;
-  /// The path of the kept points alone; ends_of_moves() must be among them.
+  /// Returns the path of the kept points alone; ends_of_moves() must be among them.
   ShiftPath thinned(const std::vector<bool>& kept) const;
   double largest_shift_mm() const;
-  /// Cuts longer shifts to `max_shift_mm`; plunges stay plunges. Returns at how many points.
+  /// Cuts longer shifts to `max_shift_mm`; plunges stay plunges. Returns the number of points that it changed.
   std::size_t cut_to(double max_shift_mm);
 
  private:

@@ -17,7 +17,7 @@ class Splits {
   /// The ends of moves, and every point of an arc (which becomes the fewest arcs when it is emitted).
   explicit Splits(const ShiftPath& path);
 
-  /// Adds points of lines where the shifted path strays by more than tolerance_mm from the one without them.
+  /// Adds points of lines where the shifted path deviates by more than tolerance_mm from the one without them.
   std::size_t add_strays(const ShiftPath& path, double tolerance_mm);
   /// Adds points of lines at which the feed changes.
   void add_feed_changes(const ShiftPath& path) { path.keep_feed_changes(kept_); }
@@ -35,7 +35,7 @@ class ThinPath {
   ShiftPath& path() { return path_; }
   const ShiftPath& path() const { return path_; }
   std::vector<Observation> places_of(std::span<const Observation> observations) const;
-  /// The greatest of the values of the points that come to lie between two kept ones; one per kept point.
+  /// Returns, for each kept point, the greatest value of it and the points up to the next kept one.
   std::vector<double> greatest_of(std::span<const double> values) const;
   void take_shifts(const ShiftPath& whole);
   void give_shifts(ShiftPath& whole) const;

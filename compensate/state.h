@@ -35,7 +35,7 @@ struct GivenProgram {
   double time_s = 0;  ///< machine time
 };
 
-/// What is compensated, and how; `given` and `feed_unusable` are found by the first prediction, then all stays.
+/// The task of a compensation. The first prediction sets `given` and `feed_unusable`; after that it does not change.
 struct Task {
   const machine::Job& job;
   const CompensateOptions& options;
@@ -55,17 +55,17 @@ struct Task {
     return options.time_budget_percent ? options.time_budget_percent : job.compensation.time_budget_percent;
   }
   double tolerance_mm() const { return job.compensation.half_width_um() / 1000; }
-  /// Of the points of a long line. Where the control stops at every corner, a split would be a stop: the feed falls to
-  /// nothing there, and the mark that this leaves is a new error, which the next round answers with new splits.
+  /// Returns the spacing of the points on a long line. Where the control stops at every corner, a split would be a stop
+  /// whose mark is a new error, which the next round would answer with new splits: there lines are not split.
   double spacing_mm() const;
 };
 
-/// What a version cuts before the moves to compensate: runs of them once more, or the passes before on another path.
+/// Cuts of a version before the moves to compensate: repeated runs of them, or the passes before on another path.
 struct EarlierCuts {
-  std::vector<std::size_t> runs{};     ///< cut again: indices of pass_runs, each as often as it is cut before
-  nc::RepeatedText text;               ///< of the given program with runs repeated
-  std::vector<std::uint32_t> moves{};  ///< this version's, one per move of the given program
-  double allowance_mm = 0;             ///< left by first cuts, or by the passes before
+  std::vector<std::size_t> runs{};     ///< repeated runs: indices of pass_runs, each once per additional cut
+  nc::RepeatedText text;               ///< text of the given program with the runs repeated
+  std::vector<std::uint32_t> moves{};  ///< moves of this version, one per move of the given program
+  double allowance_mm = 0;             ///< stock left by the first cuts, or by the passes before
   std::optional<PassBefore> pass_before{};
 };
 
@@ -105,13 +105,13 @@ struct BeforeGuard {
   std::size_t round = 0;
   std::shared_ptr<const Emitted> emitted;
   std::size_t too_deep = 0;         ///< points of the surface below the depth limit
-  std::int32_t deepest_stamp = -1;  ///< that made the deepest of them
+  std::int32_t deepest_stamp = -1;  ///< stamp that made the deepest of these points
 };
 
 struct RoundFigures {
   double rms_um = 0, p95_um = 0;  ///< judged error
   double depth_um = 0;            ///< gouge depth of 99.9 % of the surface
-  bool out_of_question = false;   ///< takes more machine time than is allowed, or its passes before cut too deep
+  bool out_of_question = false;   ///< the round takes too much machine time, or its passes before cut too deep
   double worse_um = 0;            ///< WorsePlaces::p999_um
 };
 

@@ -21,7 +21,7 @@ struct Emitted {
   simulate::SimulatedProgram program;
   nc::MoveMap map;
   PathQuality quality;
-  machine::Operations operations;  ///< the job's, with the emitted program's lines
+  machine::Operations operations;  ///< operations of the job, with the emitted program's lines
 };
 
 struct Trial {
@@ -31,7 +31,7 @@ struct Trial {
   std::shared_ptr<const Emitted> emitted;      ///< none: the given program
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
   std::vector<simulate::StampLoad> loads;
-  std::vector<double> total_mm;  ///< against the part's mesh, one per point; empty without a mesh
+  std::vector<double> total_mm;  ///< error against the part's mesh, one per point; empty without a mesh
   int static_rounds = 0;
   std::size_t unsettled = 0;
   bool all_valid = true;                                    ///< the model holds everywhere (simulate/validity.h)
@@ -47,15 +47,15 @@ using motion::moved_ranges;
 
 /// A program whose path is shifted, and what its trials need beside the path.
 struct ShiftedProgram {
-  machine::Job job;  ///< with operations as lines of this program
+  machine::Job job;  ///< the job, with its operations as lines of this program
   std::shared_ptr<const simulate::SimulatedProgram> program;
-  const simulate::Target* target = nullptr;  ///< the job's; outlives the object
+  const simulate::Target* target = nullptr;  ///< target of the job; outlives the object
   bool own_target = true;                    ///< see simulate::Setup
   simulate::Predictor predictor = simulate::predict;
   std::vector<simulate::PathFraction> stamps{};  ///< Target::stamps on the moves of `program`; none: another's target
   nc::EmitOptions decimals{};
   std::vector<Vec3> bending{};     ///< nominal_bending, where rows are hidden; else empty
-  std::vector<bool> first_cuts{};  ///< one per move: of a run that is cut again; empty: none
+  std::vector<bool> first_cuts{};  ///< whether each move belongs to a run that is cut again; empty: none does
   /// Kept between the rounds, whose shifts hardly change how the part yields; null: the target's, or not known yet.
   std::shared_ptr<const simulate::PartSurvey> part_yields{};
 };
@@ -70,10 +70,10 @@ inline constexpr double kViaTolerance_mm = 0.0005;
 /// split. Does not throw for problems that were already reported for the given program.
 std::shared_ptr<const Emitted> emit(const ShiftedProgram& from, const ShiftPath& path, const std::vector<bool>& splits,
                                     const std::vector<bool>& compensated);
-/// The text alone. `header`: comment lines for it.
+/// Returns the emitted text alone. `header`: comment lines for it.
 nc::Emission text_of(const ShiftedProgram& from, const ShiftPath& path, const std::vector<bool>& splits,
                      const std::string& header = {});
-/// Predicts the emitted program; without one, the program itself.
+/// Predicts the emitted program, or the program itself where none was emitted.
 simulate::Prediction predict(const ShiftedProgram& from, const Emitted* emitted,
                              const std::function<void(double)>& progress);
 Observed observe(const ShiftedProgram& from, const ShiftPath& path, const Emitted* emitted,

@@ -29,7 +29,7 @@ struct ParameterGroup {
 /// "# NAME: VALUE +- ERROR UNIT". Errors [uncertainty]: neither, or a file without a standard error.
 std::vector<ParameterGroup> read_uncertainty(const std::string& file_or_percent);
 
-/// The job with one group changed by one standard error. Parameters that the job does not have are listed in `unknown`.
+/// Returns the job with one group changed by one standard error. Parameters that it does not have go to `unknown`.
 machine::Job moved(const machine::Job& job, const ParameterGroup& group, std::vector<std::string>& unknown);
 
 struct Band {

@@ -12,7 +12,8 @@
 
 namespace camber::compensate {
 
-/// `count` lines of the emitted program from `emitted` on stand for as many of the given one from `given` on; 1-based.
+/// `count` lines of the emitted program, from `emitted` on, correspond to as many of the given one, from `given` on.
+/// Lines count from 1.
 struct LineRun {
   std::size_t emitted = 0, given = 0, count = 0;
 };
@@ -33,7 +34,7 @@ std::string record_path(const std::string& program);
 /// Returns the record of the program that was written to `output`; `job`: that it was made with.
 Record make_record(const machine::Job& job, const CompensationResult& result, const std::string& output);
 
-/// The record as JSON, and back. read_record throws InputError [record-format].
+/// Convert the record to JSON and back. read_record throws InputError [record-format].
 std::string record_json(const Record& record);
 Record read_record(const std::string& path);
 
@@ -46,7 +47,7 @@ machine::Job judging_job(const machine::Job& job, const CompensationResult& resu
 /// [file-missing], [record-missing], [record-several].
 std::string find_record(const std::string& place);
 
-/// Throws InputError [program-edited] where the emitted or the given program are no longer what the record is of.
+/// Throws InputError [program-edited] if the emitted or the given program has changed since the record was written.
 void check_record(const Record& record, const std::string& record_path);
 
 struct Verification {

@@ -12,17 +12,17 @@
 namespace camber::copymill {
 
 struct ApproachOptions {
-  double clearance_mm = 1;     ///< above and beside material; rapids keep this away
-  double more_than_mm = 0.02;  ///< material of less height is not met
+  double clearance_mm = 1;     ///< distance that rapids keep above and beside material
+  double more_than_mm = 0.02;  ///< material of less height is ignored
   double link_mm = 0;          ///< longest straight way through material from pass to pass
-  bool remembers = false;      ///< keeps where the axis has gone, for finish()
+  bool remembers = false;      ///< keeps the ways of the axis for finish()
 };
 
-/// Links, entries and the passes themselves. Between passes the tool stays down where the straight way is free of the
-/// part and leads through air, or is short; else it is lifted over what stands on the way. Into material it goes from
-/// the side, through air, where that can be; else straight down where the cutter may; else down along the pass itself,
-/// which is free of the part at every height above it: a helix on a closed pass, a ramp to and fro on an open one.
-/// Rapids keep above the runner's ClearHeight.
+/// Runs links, entries and passes. Between passes the tool stays down where the straight way is free of the part and
+/// leads through air, or is short; else it is lifted over the material on the way. It enters material from the side,
+/// through air, if possible; else straight down where the cutter may; else along the pass, which is free of the part at
+/// every height above it: in a helix on a closed pass, in a ramp to and fro on an open one. Rapids keep above the
+/// runner's ClearHeight.
 class Approach {
  public:
   Approach(const OperationCut& cut, const TipField& field, Standing& standing, Runner& runner,
@@ -31,7 +31,7 @@ class Approach {
 
   /// Cuts the stretches of a pass that meet material.
   Runner::Ended follow(const Pass& pass);
-  /// The stretches of a pass that meet material now.
+  /// Returns the stretches of a pass that meet material now.
   std::vector<Pass> in_material(const Pass& pass) const;
   /// Cuts the stretches of a pass that the axis has not gone along since forget(), whether or not material is seen
   /// there.
@@ -40,9 +40,10 @@ class Approach {
   /// Enters a closed pass that is cut from its beginning on: down through air where none of it meets material, else in
   /// a helix along it. The pass then begins where the tool is, or as near to that as its points allow.
   Runner::Ended enter_ring(Pass& ring);
-  /// Up, over what stands on the way to a place, and to its X and Y.
+  /// Lifts the tool over the material on the way to a place, and moves it to the place's X and Y.
   Runner::Ended lift_over(const Vec3& to);
-  /// Down in rapid to the clearance above a place in air, or above anything that can stand there, and on at the feed.
+  /// Lowers the tool in rapid to the clearance above a place in air, or above anything that can stand there, then at
+  /// the feed.
   Runner::Ended lower_to(const Vec3& to);
 
  private:
@@ -53,13 +54,13 @@ class Approach {
   Runner::Ended rapid_down(const Vec3& to);
   bool nothing_can_stand(const Vec3& tip) const;
   std::optional<Vec3> side_entry(const Vec3& to, const removal::CutterShape& shape, bool surely) const;
-  /// Two cells wider: cells stand for their middles.
+  /// Returns the cutter made two cells wider, since cells stand for their middles.
   removal::CutterShape wide() const;
   bool free_way(const Vec3& from, const Vec3& to) const;
   bool in_air(const Vec3& from, const Vec3& to) const;
   double lift_into_air(const Vec3& tip) const;
   double lead_mm() const { return 0.2 * cut_.shape.radius_mm; }
-  /// Includes gaps that are passed through in less time than the tool is lifted over, about three rapids and an entry.
+  /// Returns the length of gaps that are passed through in less time than a lift takes (three rapids and an entry).
   double join_mm() const {
     constexpr double kLift_s = 0.3;
     return std::max({2 * cut_.shape.radius_mm, 4.0, kLift_s * cut_.operation.feed_mm_per_s});

@@ -10,7 +10,7 @@ namespace camber::copymill {
 /// A rectangle, a polygon or boxes, each with the levels of the tip there; the border belongs to it.
 class AxisRegion {
  public:
-  /// That of an operation; without one, the rectangle.
+  /// Takes the region of an operation; where it is not given, the rectangle of the stock.
   AxisRegion(const machine::CopyRegion& region, const Vec2& stock_min, const Vec2& stock_max);
 
   /// Returns whether the axis may be at p at some level.

@@ -11,21 +11,21 @@
 
 namespace camber::copymill {
 
-/// A height a cell that nothing in the whole cell exceeds: an upper bound, where Standing has a sample at the cell's
-/// middle. So it also covers what is narrower than a cell, such as the fin between two cuts that nearly meet. Kept over
-/// all operations of a run, since the stock's voxels lose such fins. Cells along walls keep the height of the wall.
+/// Upper bound of the material's height in each cell; Standing has a sample at the cell's middle instead. It also
+/// covers material narrower than a cell, such as the fin between two cuts that nearly meet. It is kept over all
+/// operations of a run, since the stock's voxels lose such fins. Cells along walls keep the height of the wall.
 ///
-/// In the stock that is given, what is narrower than a voxel is not seen.
+/// Material of the given stock that is narrower than a voxel is not seen.
 class ClearHeight {
  public:
   static constexpr double kAir = -1e30;
 
-  /// `smallest_mm`: of the tools' diameters; the cells are a fraction of it, but no more than two million.
+  /// `smallest_mm`: the smallest tool diameter; cells are a fraction of it wide, and at most two million.
   ClearHeight(const removal::Stock& stock, double smallest_mm);
 
-  /// The cutter has been at a place: lowers the cells that lie under it wholly.
+  /// Lowers the cells that lie completely under the cutter at a place where it has cut.
   void lower(const removal::CutterShape& shape, const Vec3& tip);
-  /// The lowest place of the tip at which the cutter certainly meets nothing; kAir where there is nothing.
+  /// Returns the lowest height of the tip at which the cutter certainly meets nothing; kAir where there is no material.
   double lowest_clear_tip_mm(const removal::CutterShape& shape, const Vec2& axis) const;
   /// Returns the greatest height of all cells that a rectangle touches; kAir where there are none.
   double over_mm(const Vec2& min, const Vec2& max) const;

@@ -45,7 +45,7 @@ namespace camber::copymill {
 struct Tick {
   double t_s = 0;
   Vec3 tip_mm = Vec3::Zero();
-  double feed_mm_per_s = 0;  ///< actual
+  double feed_mm_per_s = 0;  ///< actual feed
   double load_N = 0;         ///< lateral force of the last tooth passing; 0 in air
   double processor_ms = 0;   ///< processor time of the calling thread in this tick
 };
@@ -55,15 +55,15 @@ struct CopyOptions {
   double tolerance_mm = 0.002;
   /// Called with every tick, in order; may be empty.
   std::function<void(const Tick&)> stream{};
-  /// False: no load of an operation without force_N is read, and the stock is cut all at once when it ends. For those
-  /// who want the path alone.
+  /// False: loads of operations without force_N are not read, and their stock is cut all at once at the end. Use it
+  /// where only the path is needed.
   bool loads = true;
-  bool coolant = false;  ///< in the program, on while a tool cuts
-  /// Called before each operation, by its number from 0, with what stands; may be empty.
+  bool coolant = false;  ///< the program switches coolant on while a tool cuts
+  /// Called before each operation with its number, from 0, and the present stock; may be empty.
   std::function<void(std::size_t, const removal::Stock&)> before{};
-  /// Parts of the material that are harder than the job says: felt, but not expected.
+  /// Regions that are harder than the job says: the cut feels them, the model does not expect them.
   simulate::ForceRegions regions{};
-  /// The tool is stopped here, wherever it is, and lifted. Not given: it goes on to the end.
+  /// Time at which the tool is stopped, wherever it is, and lifted. Not given: it goes on to the end.
   std::optional<double> stop_after_s{};
 };
 
@@ -76,7 +76,7 @@ struct OperationSummary {
   std::size_t levels = 0, passes = 0;
   std::size_t ramps = 0, plunges = 0, retracts = 0;
   std::size_t trochoid_circles = 0;
-  /// Cutting found nothing: all that the operation may take was gone.
+  /// True: the operation found no material that it may cut.
   bool nothing_left = false;
   LoadFigures load;
   std::vector<Change> changes;  ///< changes of feed and depths, in order of time
@@ -85,16 +85,16 @@ struct OperationSummary {
 struct CopyResult {
   std::string text;                              ///< the NC program
   nc::WrittenProgram program;                    ///< the same in pieces: head, operations, end
-  std::unique_ptr<removal::Stock> blank, stock;  ///< before the first cut, and what is left
+  std::unique_ptr<removal::Stock> blank, stock;  ///< stock before the first cut and after the last one
   std::vector<OperationSummary> operations;
   double time_s = 0;
   std::size_t ticks = 0, blocks = 0;
   double tick_mean_ms = 0, tick_max_ms = 0;  ///< computing time
   double removed_mm3 = 0;
   bool stopped = false;            ///< ended by CopyOptions::stop_after_s
-  LeftMaterial left;               ///< on the part where the operations' tools could touch it
-  double path_depth_um = 0;        ///< greatest, of the milling path in the part, by the exact offset surface
-  Vec3 deepest_mm = Vec3::Zero();  ///< the tip's place there
+  LeftMaterial left;               ///< material left on the part where the operations' tools could touch it
+  double path_depth_um = 0;        ///< greatest depth of the milling path in the part, by the exact offset surface
+  Vec3 deepest_mm = Vec3::Zero();  ///< position of the tip at that depth
 };
 
 /// Makes the paths of the operations, in their order, and cuts the job's stock along them. Requires operations that

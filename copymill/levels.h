@@ -15,8 +15,8 @@
 
 namespace camber::copymill {
 
-/// Level faces of the part that look up, over the region: heights, descending, with more than `least_mm2` each, those
-/// within a micrometre together. A tip that goes to such a height touches the face and does not go into it.
+/// Returns the heights of the part's upward level faces over the region, descending; faces within a micrometre count
+/// together and need more than `least_mm2`. A tip at such a height touches the face and does not go into it.
 std::vector<double> level_floors(const TriangleMesh& part, const AxisRegion& region, double least_mm2);
 
 /// Returns the levels from the top down to the bottom, each floor (raised by the allowance) on the way included: levels
@@ -25,7 +25,7 @@ class Levels {
  public:
   Levels(double top_mm, double bottom_mm, std::vector<double> floors_mm);
 
-  /// The next level below one, no deeper than the axial depth; nothing at the bottom.
+  /// Finds the next level below one, no deeper than the axial depth. Returns false at the bottom.
   bool next(double above_mm, double axial_depth_mm, double& level_mm) const;
   double top_mm() const { return top_; }
   double bottom_mm() const { return bottom_; }
@@ -35,8 +35,8 @@ class Levels {
   std::vector<double> stops_;  ///< floors and the bottom, descending
 };
 
-/// Levels of a region of several boxes: from its top to its bottom evenly, and the floors in between, which are cut
-/// after the even level below them, so that nothing is left there but what stands on them.
+/// Levels of a region of several boxes: evenly spaced from its top to its bottom, and the floors in between, each cut
+/// after the even level below it, when only the material on the floor is left.
 struct BoxLevels {
   Levels even;
   std::vector<double> floors_mm;  ///< descending
@@ -45,21 +45,21 @@ struct BoxLevels {
   std::vector<double> floors_between(double above_mm, double level_mm) const;
 };
 
-/// `floors_mm` of the part, without allowance; bottoms of boxes are floors too, with the allowance and, where no part
-/// is under them, without it.
+/// `floors_mm`: floors of the part, without allowance. Bottoms of boxes are floors too: with the allowance, or without
+/// it where no part is under them.
 BoxLevels box_levels(double top_mm, double bottom_mm, std::vector<double> floors_mm, const AxisRegion& region,
                      double allowance_mm);
 
-/// Loops of a region at one distance after the other. A loop may be cut when all loops of the distance before that lie
-/// beside it are; of those that may, the nearest to the tool comes next. So the tool stays at a boss or in a corner
-/// until it has come to the wall there, and never has more than one distance beside it.
+/// Orders the loops of a region, which are given distance by distance. A loop may be cut when all loops of the distance
+/// before beside it have been cut; of these loops the nearest to the tool comes next. So the tool stays at a boss or in
+/// a corner until it has come to the wall there, and never has more than one distance beside it.
 class LoopOrder {
  public:
-  /// The loops of the next distance, `apart_mm` from those of the one before. `may_turn`: open ones may be followed
-  /// from either end.
+  /// Adds the loops of the next distance, `apart_mm` from those before. `may_turn`: open loops may be followed from
+  /// either end.
   void add(std::vector<Pass> loops, double apart_mm, bool may_turn);
-  /// The next one, a closed one beginning as near to the tool as its points allow; nothing when all are taken. A tool
-  /// that is nowhere yet gets the first.
+  /// Returns the next loop, a closed one from its point nearest to the tool on; nothing when all are taken. Without a
+  /// tip the first loop is returned.
   std::optional<Pass> next(const std::optional<Vec3>& tip);
 
  private:

@@ -61,7 +61,7 @@ class FeltHardness {
 };
 
 enum class LoadKind : std::uint8_t { force, torque, power, deflection };
-/// N (lateral), N mm (greatest of a passing), W, mm.
+/// Quantity that is limited: lateral force in N, greatest torque of a passing in N mm, power in W, deflection in mm.
 double load_of(const simulate::StampLoad& load, LoadKind kind, double spindle_rpm);
 
 struct LoadBand {
@@ -71,8 +71,8 @@ struct LoadBand {
   double up_step = 0.10;                 ///< fraction of the nominal feed
   double lowest = 0.50, highest = 1.50;  ///< fraction of the nominal feed
   double max_feed_mm_per_s = 1e9;        ///< bound of machine and operation; wins over `highest`
-  int turns_at_lowest = 2;               ///< over the limit at the lowest feed before a depth falls
-  int turns_of_room = 10;                ///< before a depth rises
+  int turns_at_lowest = 2;               ///< turns over the limit at the lowest feed before a depth falls
+  int turns_of_room = 10;                ///< turns with room for a greater depth before it rises
   double depth_step = 0.80;              ///< a depth falls to this share of itself, or lower in proportion to the load
   double lowest_depth = 0.25;            ///< fraction of the nominal depths
 };
@@ -139,7 +139,7 @@ class LoadRule {
   /// Returns the ratio of felt to expected load.
   double hardness() const { return hardness_; }
   /// Notes that a place ahead allows no more than this feed; infinite: nothing ahead binds. For the log: keeping it is
-  /// up to the motion (copymill/feed_motion.h).
+  /// up to the motion (copymill/runner.h).
   void note_ahead(double t_s, const Vec3& place_mm, double feed_mm_per_s);
 
   const std::vector<Change>& log() const { return log_; }
@@ -173,7 +173,7 @@ class LoadRule {
 struct OverTarget {
   double t_s = 0;
   Vec3 place_mm = Vec3::Zero();  ///< tip at the greatest force
-  double force_N = 0;            ///< greatest
+  double force_N = 0;            ///< greatest force
   std::size_t passings = 0;
 };
 
@@ -183,7 +183,7 @@ struct LoadFigures {
   double target_N = 0;                  ///< 0: none, feed and depths stay as they are
   double max_N = 0;
   std::size_t passings = 0;          ///< passings that cut
-  std::size_t counted = 0;           ///< those at a free feed: not the lowest, the highest or a corner's
+  std::size_t counted = 0;           ///< passings at a free feed: not the lowest, the highest or a corner's
   std::size_t within = 0;            ///< number of the counted ones with 80 to 105 % of the target
   std::size_t over = 0;              ///< number of all that cut with more than 120 %
   std::vector<OverTarget> places{};  ///< in order of time

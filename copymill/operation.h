@@ -29,7 +29,7 @@ bool cut_levels(const Workplace& place);
 /// Finishing on the part's surface by rows whose scallops have the height asked for. False as above.
 bool cut_scallops(const Workplace& place);
 
-/// Holes, where they are asked for: the part is not looked at.
+/// Drills the given holes; the part is not considered.
 void drill_holes(const OperationCut& cut, Standing& standing, Runner& runner, double safe_z_mm);
 
 }  // namespace camber::copymill

@@ -19,7 +19,7 @@ using Outline = std::vector<Vec2>;
 std::vector<Outline> outlines(const Grid& grid, const std::vector<char>& inside,
                               const std::function<Vec2(const Vec2& in, const Vec2& out)>& crossing);
 
-/// The last place inside on the way out, by bisection to `tolerance_mm`.
+/// Returns the last place inside on the way out, by bisection to `tolerance_mm`.
 Vec2 last_inside(const Inside& inside, Vec2 in, Vec2 out, double tolerance_mm);
 
 /// Adds points to an outline of exact points until no chord is farther from the region's border than `tolerance_mm`:

@@ -20,7 +20,7 @@ class PathDepth {
   /// `field`: without allowance.
   explicit PathDepth(const TipField& field) : field_(field) {}
   void add(const Vec3& tip);
-  /// Greatest shift, up or sideways, that frees the cutter at a place; up to 0.1 mm.
+  /// Returns the greatest depth of a place: the least shift, up or sideways, that frees the cutter; up to 0.1 mm.
   double max_mm() const { return max_; }
   const Vec3& worst_mm() const { return worst_; }
 

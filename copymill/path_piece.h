@@ -25,13 +25,13 @@ Pass reversed(Pass pass);
 /// Begins a closed pass at the point nearest to a place; an open one is left as it is.
 void start_near(Pass& pass, const Vec3& place);
 double length_mm(const Pass& pass);
-/// Points added so that none is farther than this from the next.
+/// Returns the points of a pass with further ones between them, at most `step_mm` apart.
 std::vector<Vec3> dense(const Pass& pass, double step_mm);
-/// The stretches of a pass whose points, `step_mm` apart, are `wanted`, `lead_mm` longer at either end; shorter gaps
-/// than `join_mm` between them are passed through. A pass that is wanted everywhere stays as it is.
+/// Returns the stretches of a pass whose points, `step_mm` apart, are `wanted`, `lead_mm` longer at either end; gaps
+/// shorter than `join_mm` are included. A pass that is wanted everywhere stays as it is.
 std::vector<Pass> stretches(const Pass& pass, double step_mm, const std::function<bool(const Vec3&)>& wanted,
                             double lead_mm, double join_mm);
-/// Distance of a place from a line through points, beginning to end.
+/// Returns the distance of a place from the polyline through the points.
 double distance_mm(const std::vector<Vec3>& line, const Vec3& place);
 
 /// A piece from one place to another: a line, or an arc in a level plane.
@@ -55,12 +55,12 @@ struct PieceOptions {
   double increment_mm = 0.001;
 };
 
-/// The stretch of a piece from one place on it to another, both rounded to increments.
+/// Returns the part of a piece from one length along it to another, both ends rounded to increments.
 PathPiece part_of(const PathPiece& piece, double from_mm, double to_mm, double increment_mm);
 
 Vec3 rounded(const Vec3& p, double increment_mm);
 
-/// Points, rounded to increments, as few lines and arcs (repath/fit.h); steep stretches stay lines from point to point.
+/// Fits few lines and arcs to points, rounded to increments (repath/fit.h); steep stretches stay lines between points.
 std::vector<PathPiece> pieces_of(const std::vector<Vec3>& points, bool closed, const PieceOptions& options);
 
 }  // namespace camber::copymill

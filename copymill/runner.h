@@ -22,7 +22,7 @@ namespace camber::copymill {
 
 // Motion: moves the tip along lines and arcs, period by period of the control.
 
-/// A speed limit at a distance along the path from here; 0: a stop there.
+/// A speed limit at a distance along the path from here; a speed of 0 is a stop.
 struct SpeedLimit {
   double distance_mm = 0, speed_mm_per_s = 0;
 };
@@ -34,16 +34,15 @@ struct TickMotion {
 };
 
 /// Returns the motion as near to `wanted_mm_per_s` as the acceleration allows, such that every limit can still be kept
-/// by braking with that acceleration. Limits that could be kept at the tick's beginning, by this rule, can be kept at
-/// its end; of limits nearer than braking allows it makes the best.
+/// by braking with that acceleration. Limits that could be kept at the beginning of the tick can be kept at its end;
+/// for limits nearer than braking allows it brakes as far as possible.
 TickMotion next_tick(double speed_mm_per_s, double wanted_mm_per_s, std::span<const SpeedLimit> ahead,
                      double acceleration_mm_per_s2, double tick_s);
 
 /// Returns the way from a speed to rest, v^2 / (2 a).
 double stopping_distance_mm(double speed_mm_per_s, double acceleration_mm_per_s2);
 
-/// The greatest acceleration along a direction that asks no axis for more than its own; the path's own limit counts
-/// too.
+/// Returns the greatest acceleration along a direction within the limits of the axes and of the path.
 double acceleration_along(const machine::Machine& machine, const Vec3& direction);
 
 /// Moves along a chain of pieces from rest to rest. Speeds are such that the axes' accelerations hold: half of the
@@ -59,7 +58,7 @@ class FeedMotion {
   void start(std::vector<PathPiece> path, bool rapid);
   /// Advances by one period. `wanted`: speed to aim for; a stop is 0. `ahead`: a further limit on the way, or none.
   void tick(double wanted_mm_per_s, const SpeedLimit& ahead);
-  /// The path is done and the tip at rest.
+  /// Returns whether the path is done and the tip at rest.
   bool finished() const { return done() && settled_ >= window_.size(); }
   /// True if the tip is at rest, wherever that is.
   bool at_rest() const { return speed_ <= 0 && settled_ >= window_.size(); }
@@ -78,7 +77,7 @@ class FeedMotion {
     Vec3 place, direction;
   };
   Ahead ahead(double distance_mm) const;
-  /// Sets the tip down somewhere else, at rest.
+  /// Places the tip somewhere else, at rest.
   void place(const Vec3& tip);
 
  private:
@@ -92,7 +91,7 @@ class FeedMotion {
   std::vector<Vec3> window_;  ///< ring buffer of the moving average
   std::size_t window_at_ = 0, settled_ = 0;
   std::vector<PathPiece> path_;
-  std::vector<double> from_mm_;         ///< along the path to the beginning of each piece, and its length
+  std::vector<double> from_mm_;         ///< length along the path at the beginning of each piece, and of the whole path
   std::vector<double> entry_, within_;  ///< speed limits at the beginning of each piece and in it
   double acceleration_ = 0;
   bool rapid_ = false;
@@ -114,26 +113,26 @@ class Runner {
   enum class Ended {
     done,
     stopped,  ///< ended by CopyOptions::stop_after_s
-    replan    ///< a depth has fallen: the tool stands in the cut and waits for other passes
+    replan    ///< a depth was lowered: the tool stands in the cut and waits for other passes
   };
 
   Runner(const machine::Job& job, const CopyOptions& options, removal::Stock& stock);
 
-  /// The tool of an operation stands at the safe height from here on.
-  /// `depth`: judges the path; none for holes. `lowest_mm`: the tip goes no deeper.
+  /// Begins an operation: its tool is at the safe height. `depth`: judges the path; none for holes. `lowest_mm`: lowest
+  /// height of the tip.
   void begin(const OperationCut& cut, Standing& standing, double safe_z_mm, PathDepth* depth, double lowest_mm);
-  /// Writes what was cut to the stock.
+  /// Ends an operation and writes its cuts to the stock.
   void end();
 
-  /// Straight, in rapid, through air.
+  /// Moves the tool straight in rapid through air.
   Ended rapid(const Vec3& to);
-  /// Along points from where the tool is, at a share of the feed. Nothing is done where it is there already.
+  /// Cuts along points from where the tool is, at a fraction of the feed. Does nothing if the tool is there already.
   Ended cut(const std::vector<Vec3>& points, bool closed, double feed_share = 1);
 
-  /// Along lines and arcs that begin where the tool is.
+  /// Cuts along lines and arcs that begin where the tool is.
   Ended follow(std::vector<PathPiece> path);
 
-  /// Not given at the start of an operation.
+  /// Position of the tip; not given at the start of an operation.
   const std::optional<Vec3>& at() const { return at_; }
   double safe_z_mm() const { return safe_z_; }
   bool stopped() const { return stopped_; }
@@ -141,10 +140,10 @@ class Runner {
   /// Radial depth of the next loops and rows, axial depth of the next level.
   double radial_mm() const { return follower_->radial_mm(); }
   double axial_mm() const { return follower_->axial_mm(); }
-  /// Other passes follow.
+  /// Tells the follower that other passes follow.
   void replanned() { follower_->replanned(); }
-  /// The load that the model expects of a level cut at a place at the lowest feed, with what is felt over it, as a
-  /// share of the target; nothing where the operation has none.
+  /// Returns the load of a level cut at a place at the lowest feed, as the model expects it times the hardness felt, as
+  /// a fraction of the target; nothing where the operation has no target.
   std::optional<double> share_at_lowest_feed(const Vec3& tip, const Vec2& direction);
   /// Logs how a full cut was made or avoided, at the present time.
   void note_slot(const Vec3& tip, double from_mm, double to_mm, Cause cause, double share);
@@ -159,10 +158,10 @@ class Runner {
  private:
   Ended run(std::vector<PathPiece> path, bool rapid, double feed_share);
   void tick(bool rapid, double feed_share, bool halted);
-  /// Tooth passings of a tick; true if there was one.
+  /// Cuts the tooth passings of a tick. Returns true if there was one.
   bool stamp_until(double t_s, const Vec3& before, const Vec3& now);
   void look_ahead();
-  /// Before a tooth passing needs it: the stock around the tool at rest, and some of what it reaches soon.
+  /// Read stock before a tooth passing needs it: around the tool at rest, and some of what it reaches soon.
   void read_stock_here();
   void read_stock_ahead();
   void stamp_at(double t_s, const Vec3& tip);

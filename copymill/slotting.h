@@ -35,24 +35,24 @@ struct Circle {
 /// wall that it cuts is hollow, the angle is greater than that depth takes on a straight one.
 double greatest_engagement_rad(double cutter_radius_mm, const Circle& before, const Circle& next);
 
-/// The line to a larger circle goes outwards by so much; on its way no more than this comes to the engagement angle.
+/// Returns the angle by which the line to a larger circle goes outwards; it adds at most this to the engagement angle.
 double outward_rad(const Circle& before, const Circle& next);
 
 /// The greatest advance from circle to circle of one radius whose engagement stays within a limit (below half a turn).
 double trochoid_step_mm(double cutter_radius_mm, double circle_radius_mm, double limit_rad);
 
-/// Circle after circle, each once around, joined by lines: counter-clockwise with the line on the right of the way from
-/// centre to centre, clockwise with it on the left; either way it leaves and meets the circles in their own direction.
-/// The path lies at one height and begins on the first circle, at start_of().
+/// Returns the path around one circle after the other, joined by tangent lines: on the right of the way from centre to
+/// centre where the circles are counter-clockwise, else on the left. The path lies at one height and begins on the
+/// first circle, at start_of().
 std::vector<PathPiece> trochoid(const std::vector<Circle>& circles, double z_mm, bool counter_clockwise,
                                 double increment_mm);
 /// Returns where the line to the second circle leaves the first one.
 Vec2 start_of(const std::vector<Circle>& circles, bool counter_clockwise);
 
-/// Where a pass would cut the tool's full width, circles are cut around it first, which advance so that the tool's
-/// engagement angle stays within that of the operation's radial depth (copymill/trochoid.h); the pass then finds no
-/// more than the rest. With CopyOperation::slotting `by_load` that is done only where a full cut would be over the
-/// force that the operation asks for even at the lowest feed and depth; without such a target never.
+/// Cuts circles around a pass before it, where the pass would cut the tool's full width. The circles advance so that
+/// the engagement angle stays within that of the operation's radial depth; the pass then cuts the rest. With
+/// CopyOperation::slotting `by_load` this is done only where a full cut would exceed the operation's target force even
+/// at the lowest feed and depth, and never without a target.
 class Slotting {
  public:
   /// Fraction of the tool's diameter: no smaller circles are run. A slot, less the allowance on either side, must be
@@ -68,8 +68,8 @@ class Slotting {
   double largest_mm() const { return 2 * kLargest * place_.cut.shape.radius_mm; }
   /// Returns whether a pass would have the full width in the cut somewhere.
   bool full_width(const Pass& pass) const;
-  /// Cuts trochoids around the stretches of a level pass that would have. `own`: the pass itself is to be cut next, and
-  /// the log tells why a stretch of it stays a full cut.
+  /// Cuts trochoids around the stretches of a level pass that would be full cuts. `own`: the pass itself is cut next,
+  /// and the log tells why a stretch of it stays a full cut.
   Runner::Ended clear(const Pass& pass, bool own);
 
  private:

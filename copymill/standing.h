@@ -10,26 +10,26 @@
 
 namespace camber::copymill {
 
-/// The stock as seen from above, a height a cell (taken at the cell's middle). Serves plans only: where a pass meets
-/// material, how high the tool must be lifted. Loads and the result come from the stock itself.
+/// Height of the stock in each cell, at the cell's middle. It serves planning only: where a pass meets material, how
+/// high the tool must be lifted. Loads and the result come from the stock itself.
 class Standing {
  public:
   static constexpr double kAir = -1e30;
 
-  /// Reads the stock, column by column, down to `floor_mm`: below, all cells end there.
+  /// Reads the stock, column by column, down to `floor_mm`, where all cells end at the latest.
   Standing(const removal::Stock& stock, double cell_mm, double floor_mm);
 
-  /// The cutter passes from one place to another.
+  /// Lowers the cells that the cutter passes on its way from one place to another.
   void cut(const removal::CutterShape& shape, const Vec3& from, const Vec3& to);
   /// Returns whether the cutter, its tip there, meets material by more than `more_than_mm` of height.
   bool meets(const removal::CutterShape& shape, const Vec3& tip, double more_than_mm) const;
-  /// The angle of the cutter's leading half circumference, up to pi, that has material beside it, moving level in a
-  /// direction of length 1. Looked at every 7.5 degrees, at 0.97, 0.8 and 0.6 of the radius.
+  /// Returns the angle of the cutter's leading half circumference, up to pi, that has material beside it, for a level
+  /// motion along a unit vector. Sampled every 7.5 degrees, at 0.97, 0.8 and 0.6 of the radius.
   double engaged_rad(const removal::CutterShape& shape, const Vec3& tip, const Vec2& direction,
                      double more_than_mm) const;
-  /// Highest material in a rectangle; kAir where there is none.
+  /// Returns the greatest height of the material in a rectangle; kAir where there is none.
   double highest_mm(const Vec2& min, const Vec2& max) const;
-  /// Highest material under a disc.
+  /// Returns the greatest height of the material under a disc.
   double highest_under_mm(const Vec2& axis, double radius_mm) const;
   double at(const Vec2& p) const;
   double top_mm() const { return top_; }  ///< greatest height when it was read
@@ -45,8 +45,8 @@ class Standing {
   double top_ = kAir;
 };
 
-/// The stretches of a pass that meet material, `lead_mm` longer at either end; shorter gaps than `join_mm` between them
-/// are passed through. A pass that meets material everywhere stays as it is.
+/// Returns the stretches of a pass that meet material, `lead_mm` longer at either end; gaps shorter than `join_mm` are
+/// included. A pass that meets material everywhere stays as it is.
 std::vector<Pass> stretches_in_material(const Standing& standing, const removal::CutterShape& shape, const Pass& pass,
                                         double more_than_mm, double lead_mm, double join_mm);
 

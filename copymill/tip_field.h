@@ -9,9 +9,9 @@
 
 namespace camber::copymill {
 
-/// The lowest place of the tip above each point at which the cutter stays an allowance away from the part, measured
-/// along the normal. Exact but for rounding: a cutter grown by the allowance (its rounding and its radius alike) is
-/// lowered onto the mesh (repath/drop_cutter.h), and its tip is the allowance lower than the tool's own.
+/// Lowest height of the tip above each point at which the cutter stays an allowance away from the part, measured along
+/// the normal. Exact but for rounding: a cutter grown by the allowance (its rounding and its radius alike) is lowered
+/// onto the mesh (repath/drop_cutter.h), and its tip is the allowance lower than the tool's own.
 class TipField {
  public:
   static constexpr double kNothingBelow = -std::numeric_limits<double>::infinity();
@@ -19,12 +19,12 @@ class TipField {
   /// Requires a shape that is not general.
   TipField(const TriangleMesh& part, const removal::CutterShape& shape, double allowance_mm);
 
-  /// kNothingBelow where nothing of the part lies under the cutter.
+  /// Returns the lowest height of the tip; kNothingBelow where no part lies under the cutter.
   double lowest_mm(const Vec2& axis) const {
     const auto contact = drop_.at(axis);
     return contact ? contact->tip_mm + allowance_mm_ : kNothingBelow;
   }
-  /// Returns whether the tip may stand there; contact counts as free.
+  /// Returns whether the tip may be there; contact counts as free.
   bool free(const Vec2& axis, double tip_mm) const { return lowest_mm(axis) <= tip_mm + kContact_mm; }
 
   double allowance_mm() const { return allowance_mm_; }

@@ -18,7 +18,7 @@ Tool read_tool(TomlTable table, int number);
 std::string tool_toml(const Tool& tool);
 
 /// [tool.N] tables of a file into `tools`, those with `from` by the file that its key `tools` names
-/// (machine/tool_shelf.h), which counts from `folder`. Problems go to `diagnostics`. inch: unit of a tool table of
+/// (machine/tool_shelf), which counts from `folder`. Problems go to `diagnostics`. inch: unit of a tool table of
 /// LinuxCNC.
 void read_tools(TomlTable& top, const std::filesystem::path& folder, bool inch, std::map<int, Tool>& tools,
                 Diagnostics& diagnostics);

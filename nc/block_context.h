@@ -27,7 +27,7 @@ struct BlockRequest {
   bool single_direction = false;  ///< G60
 };
 
-/// What every part of the interpreter sees.
+/// State and options shared by all parts of the interpreter.
 struct BlockContext {
   const InterpreterOptions& options;
   Reporter& report;
@@ -57,7 +57,7 @@ enum class AxisPlace : std::uint8_t {
   known
 };
 
-/// Where the tool is, in the frame of the moves.
+/// Position of the tool in the frame of the moves, and which coordinates are known.
 struct ToolPlace {
   Vec3 position_mm = Vec3::Zero();
   std::array<AxisPlace, 3> axis{AxisPlace::never, AxisPlace::never, AxisPlace::never};

@@ -107,7 +107,7 @@ struct Dialect {
 /// Returns all rows, in the order in which messages list them.
 std::span<const Dialect> dialects();
 
-/// Assumed for a program whose text shows no dialect: Fanuc, in which most macros are written.
+/// Returns the dialect assumed for a program whose text shows none: Fanuc, in which most macros are written.
 const Dialect& default_dialect();
 
 /// Null for an unknown name.

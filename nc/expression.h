@@ -73,7 +73,7 @@ struct Expressions {
   std::vector<ExpressionOp> ops;
   std::vector<Expression> list;
   std::vector<std::string> names;  ///< names of parameters, lower case, without blanks
-  /// Offset of the first abbreviated function, operator or statement (SI[30], GO10); none: not given.
+  /// Offset of the first abbreviated function, operator or statement (SI[30], GO10), if there is one.
   std::optional<std::uint32_t> abbreviation{};
   void note_abbreviation(std::size_t offset) {
     if (!abbreviation) abbreviation = static_cast<std::uint32_t>(offset);

@@ -8,7 +8,7 @@
 
 namespace camber::posture {
 
-/// The way from the point before.
+/// Motion of the axes from the point before to this one.
 struct AxisStep {
   bool swings = false;      ///< rotary_path.h
   double turn_deg = 0;      ///< turn of all rotary axes

@@ -22,7 +22,7 @@ struct PathPoint {
   double way_mm = 0;  ///< way from the point before
   double time_s = 0;  ///< time at the programmed feed; 0: a rapid
 
-  /// The tip for a direction of the tool that keeps the contact.
+  /// Returns the tip, for this direction of the tool, with which the contact stays.
   Vec3 tip_mm(const Vec3& axis) const;
 };
 

@@ -46,7 +46,7 @@ struct PostureRequest {
   const nc::Program* program = nullptr;
   const nc::Interpretation* moves = nullptr;  ///< read with the machine's rotary axes
   int tool = 0;
-  std::vector<double> overhangs_mm{};  ///< ever less; empty: that of the job
+  std::vector<double> overhangs_mm{};  ///< descending; empty: the overhang of the job
   double step_mm = 1;                  ///< between the points at which the direction is chosen
   PostureOptions options;
   /// Form in which one direction is written (options.indexed): tip, tilted or dynamic; joints as the tip, for post().
@@ -62,7 +62,7 @@ struct PostureFigures {
   /// Deflection normal to the part per newton, mean over the way: lateral compliance at the tip times error_share().
   double compliance_um_per_N = 0;
   /// Error that the following errors of the axes leave on the surface: mean magnitude over the way, at the feed that
-  /// the rotary axes allow (lag_error.h).
+  /// the rotary axes allow (LagError).
   double lag_um = 0;
   /// Expected form error, mean magnitude over the way: compliance_um_per_N times the force of an edge at the feed per
   /// tooth of the first cut (posture.cpp, kOrdinaryChip_mm), and lag_um.
@@ -94,7 +94,7 @@ struct Postured {
 /// Returns one result for each overhang; none where there are errors.
 std::vector<Postured> make_postures(const PostureRequest& request, Diagnostics& diagnostics);
 
-/// The least overhang that is tried: flutes, and one diameter.
+/// Returns the least overhang that is tried: the flutes and one diameter, mm.
 double least_overhang_mm(const machine::Tool& tool);
 
 // Writes the frame of an operation at one direction of the tool.

@@ -12,19 +12,19 @@
 
 namespace camber::posture {
 
-/// A to C of one point, and its direction.
+/// Angles of A, B and C at one point, and the direction of the tool.
 struct RotaryPlace {
   Vec3 rotary_rad = Vec3::Zero();
   Vec3 axis = Vec3::UnitZ();
 };
 
-/// Angle between the direction half way between two places where the axes turn evenly, and the one half way between
-/// their directions: how far the tool swings.
+/// Returns how far the tool swings between two places: the angle between its direction half way, with the axes turning
+/// evenly, and the direction half way between the two.
 double swing_rad(const kinematics::Chain& chain, const RotaryPlace& from, const RotaryPlace& to);
 
-/// A swing that takes the centre of the rounding, on the part, farther than this off its way.
+/// Largest distance by which a swing may take the centre of the rounding, on the part, off its way.
 inline constexpr double kSwing_mm = 0.1;
-/// On the way to point i from the one before. `rotary_rad`: of rotary_path().
+/// Returns whether the tool swings on the way to point i from the one before. `rotary_rad`: result of rotary_path().
 bool swings(const kinematics::Chain& chain, std::span<const PathPoint> points, std::span<const Vec3> axes,
             std::span<const Vec3> rotary_rad, std::size_t i);
 
@@ -33,8 +33,8 @@ bool swings(const kinematics::Chain& chain, std::span<const PathPoint> points, s
 std::vector<Vec3> rotary_path(const machine::Machine& machine, std::span<const PathPoint> points,
                               std::span<const Vec3> axes);
 
-/// Directions between two places, the axes turning evenly, no more than a degree apart; at least the one half way.
-/// Calls with the share of the way, until it returns false.
+/// Calls `visit` with directions between two places, the axes turning evenly, at most a degree apart and at least with
+/// the one half way; `share`: fraction of the way. Ends when `visit` returns false.
 bool each_between(const kinematics::Chain& chain, const Vec3& from_rad, const Vec3& to_rad,
                   const std::function<bool(double share, const Vec3& axis)>& visit);
 

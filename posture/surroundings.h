@@ -28,8 +28,8 @@ struct ToolShape {
   void add(checks::TurnedSolid solid, double need_mm);
 };
 
-/// Neck, shank, holder and the bodies on the spindle (their cylinder about the axis) with `clearance_mm`, and the
-/// flutes above the cutter's rounded end, which only must not cut: they may touch to within kCutterSlack_mm.
+/// Returns neck, shank, holder and the bodies on the spindle (as cylinders about the axis) with `clearance_mm`, and the
+/// flutes above the cutter's rounded end, which only must not cut: they may come within kCutterSlack_mm.
 inline constexpr double kCutterSlack_mm = 0.02;
 ToolShape tool_shape(const machine::Tool& tool, const machine::Machine& machine, double clearance_mm);
 
@@ -43,20 +43,20 @@ class Surroundings {
   void add(const TriangleMesh& mesh, const Vec3& shift_mm = Vec3::Zero(), Obstacle what = Obstacle::solid);
   void add(std::span<const std::array<Vec3, 3>> triangles, Obstacle what);
   void add_box(const Vec3& min_mm, const Vec3& max_mm, Obstacle what = Obstacle::solid);
-  /// After the last add(), before anything else.
+  /// Builds the trees. Call it after the last add(), before anything else.
   void finish();
 
-  /// Returns how much farther the nearest piece is than it needs to be, at most `cap_mm`; negative: too near, by no
-  /// matter how much. Never more than the truth; less by up to the size of a triangle where it is not negative, which
-  /// is exact to 1e-4 mm or a thousandth of the distance. Quickest with a cap of 0.
+  /// Returns the room of the nearest piece beyond its least distance, at most `cap_mm`; negative: too near, the amount
+  /// has no meaning. Never more than the true room, and less by at most the size of a triangle where it is positive;
+  /// the sign is exact to 1e-4 mm or a thousandth of the distance. Quickest with a cap of 0.
   double room_mm(const ToolShape& tool, const Vec3& tip_mm, const Vec3& axis, double cap_mm) const;
 
   struct Inside {
     Vec3 point_mm;
     double from_axis_mm;
   };
-  /// Corners and middles of the triangles inside the cylinder of this radius about the axis, from `from_mm` above `tip`
-  /// on: the one that is deepest.
+  /// Finds the deepest of the corners and middles of triangles inside the cylinder of this radius about the axis, from
+  /// `from_mm` above the tip on. Returns false if there is none.
   bool deepest_point(const Vec3& tip_mm, const Vec3& axis, double radius_mm, double from_mm, Inside& out) const;
 
  private:

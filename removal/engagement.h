@@ -227,21 +227,20 @@ class DeflectedEngager {
                    std::int32_t first_id, const KnownRun* known = nullptr);
   ~DeflectedEngager();
 
-  /// The deflections of the stamps before stamps[from], where they were cut elsewhere: rows of the last ones, one after
-  /// the other, and the largest of all. Before the first start().
+  /// Sets the deflections of the stamps before stamps[from], where they were cut elsewhere: rows of the last ones, one
+  /// after the other, and the largest of all. Call it before the first start().
   void remember(std::size_t from, std::span<const float> rows, std::size_t row_size, double largest_mm);
   /// Begins with stamps[from] ... stamps[from + count - 1], which must come after all that were cut before. Row k of
-  /// `deflections` is that of stamps[from + k]; it is read with its stamp and with the next one.
+  /// `deflections` belongs to stamps[from + k]; it is read with its stamp and with the next one.
   void start(std::size_t from, std::size_t count, const DeflectionTable& deflections);
-  /// Chips that stamps[from + k] takes after its predecessors were cut; valid until the next call. Points less than
-  /// kNear_mm outside the material are among them, with a negative thickness.
+  /// Returns the chips that stamps[from + k] takes after its predecessors were cut; valid until the next call. Points
+  /// less than kNear_mm outside the material are among them, with a negative thickness.
   std::span<const DeflectedChipSample> read(std::size_t k);
-  /// For `count` stamps from stamps[from + k] on: the chips of read(), summed up over some patches of the envelope,
-  /// always the same ones: how much material there is, at an eighth of the cost. All of them find the stock as it is.
-  /// What earlier stamps that are not cut yet would take is then deeper than the motion lets a chip be, which changes
-  /// the sum little. Valid until the next call.
+  /// Returns the sum of the chips of read() over a fixed set of patches of the envelope, at an eighth of the cost, for
+  /// `count` stamps from stamps[from + k] on. All of them see the present stock: material that earlier stamps have yet
+  /// to cut is deeper than the motion lets a chip be, so that it changes the sum little. Valid until the next call.
   std::span<const double> glance(std::size_t k, std::size_t count);
-  /// The same sum of chips that were read.
+  /// Returns the sum of glance() for chips that were read.
   double glance_of(std::span<const DeflectedChipSample> chips) const;
   /// Cuts `count` stamps from stamps[from + k] on, tile by tile.
   void cut(std::size_t k, std::size_t count = 1);
@@ -261,15 +260,15 @@ struct SweepOptions {
 /// Carves the undeflected cutter through the stock, without engagement. Returns the volume removed, mm^3.
 double sweep(Stock& stock, const CutterShape& shape, std::span<const Stamp> stamps, const SweepOptions& options);
 
-/// Where tips of a run may stand.
+/// Box that contains all tips of a run.
 struct TipBox {
   Vec3 min_mm = Vec3::Zero(), max_mm = Vec3::Zero();
   bool contains(const Vec3& tip_mm) const;
 };
 
-/// The chips of the undeflected cutter, stamp by stamp, as RigidEngager has them for a whole run. Each stamp is read
-/// from the stock as the ones before it left it, so that nothing depends on how many are known at once. For one run of
-/// one upright tool, and one thread.
+/// Reads the chips of the undeflected cutter stamp by stamp, with the same result as RigidEngager for a whole run. Each
+/// stamp is read from the stock as the ones before it left it: the result does not depend on how many are known at
+/// once. For one run of one upright tool, and one thread.
 ///
 /// A stamp takes memory of 12 bytes for its place. Tiles of the stock stay in memory while they may be needed again, no
 /// more than a few times as many as the cutter touches at once.

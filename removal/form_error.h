@@ -94,17 +94,17 @@ struct SurfacePoint {
 /// the same voxels.
 std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& target);
 
-/// The same points of the target alone, without error, tile by tile; each moved along its grid line to where the
-/// cutters that the voxels around it name have left the surface, which a trilinear field does not tell at ridges and
-/// edges, with the normal of the cutter that governs there, and aside within the square that the grid line stands for
-/// (the same for the same grid edge): those squares cover the surface once, and cusps in step with the grid are met at
-/// all their places.
+/// Returns the points of the target alone, without error, tile by tile. Each point is moved along its grid line to the
+/// surface left by the cutters that the voxels around it name, since a trilinear field is inaccurate at ridges and
+/// edges; it has the normal of the cutter that governs there. It is also moved aside within the square that its grid
+/// line stands for (always the same for one grid edge): the squares cover the surface once, and cusps in step with the
+/// grid are sampled at all their places.
 ///
-/// `solid`: the stock that the target was cut from, before any allowance was taken off. With it the points reach up to
-/// the edges with the stock's faces: the last one of a row stands for what is left up to the edge, so that what part of
-/// a low wall is seen does not depend on where the grid lies. Without it (null) one voxel along the edges is left out.
+/// `solid`: the stock that the target was cut from, before any allowance was removed. With it the points reach up to
+/// the edges with the stock's faces: the last point of a row stands for the rest up to the edge, so that the seen part
+/// of a low wall does not depend on the grid. Without it (null) one voxel along the edges is left out.
 ///
-/// `unseen_mm2` (null: not needed): about how much of the surface that the target's sweep cut has no point.
+/// `unseen_mm2` (null: not needed): approximate area of the surface cut by the target's sweep that has no point.
 std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
                                                       const Stock* solid = nullptr, double* unseen_mm2 = nullptr);
 

@@ -29,7 +29,7 @@ struct Stamp {
   std::uint32_t move = 0;  ///< index into Interpretation::moves, where the tip is (not what is commanded)
 };
 
-/// How the tool moved since the stamp before, in the tool's frame.
+/// Motion of the tool since the stamp before, in the tool's frame.
 ///
 /// Feed per tooth is a field where the tool turns against the part: f(p) = f_tip + omega x (p - tip), omega the turn
 /// from tooth passing to tooth passing.
@@ -98,14 +98,14 @@ struct StampPath {
 /// the count is not known yet.
 using StampSink = std::function<void(const ToolRun& run, std::size_t number, const Stamp& stamp)>;
 
-/// The stamps that `keep` wants by their number, in runs of consecutive ones.
+/// Returns the stamps whose number `keep` accepts, in runs of consecutive ones.
 StampPath stamps_where(const StampPath& path, const std::function<bool(std::size_t)>& keep);
 
-/// The same tooth passings on the programmed moves themselves, without servo lag and corner rounding: each stamp of
-/// milling stands where the programmed path is nearest to the axes, so that feed marks and cusps stay in step. Where
-/// the axes cut a corner, and at the ends of a cut, stamps no farther apart are added: the whole of every `selected`
-/// move is covered. Stamps of holes stay as they are. `path`: of the same program; its `rapids` are left out.
-/// `rotary`: of a program with rotary motion, of which `program` then is the moves_in_part().
+/// Returns the same tooth passings on the programmed moves, without servo lag and corner rounding: each milling stamp
+/// is placed where the programmed path is nearest to the axes, so that feed marks and cusps stay in step. Where the
+/// axes cut a corner, and at the ends of a cut, stamps no farther apart are added: every `selected` move is covered
+/// completely. Stamps of holes stay as they are. `path`: path of the same program; its `rapids` are left out.
+/// `rotary`: path of a program with rotary motion, whose moves_in_part() then are `program`.
 StampPath nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected, const StampPath& path,
                        const kinematics::PartPath* rotary = nullptr);
 
@@ -185,12 +185,12 @@ class StampSinkScope {
 /// A stamp of nominal_path() and its number there; of `run` the count is not known yet.
 using TakeNominal = StampSink;
 
-/// Gives all stamps of nominal_path() in order, and returns its runs. Called twice it gives the same.
+/// Passes all stamps of nominal_path() to `take`, in order, and returns its runs. A second call gives the same result.
 std::vector<ToolRun> follow_nominal_path(const nc::Interpretation& program, const std::vector<bool>& selected,
                                          const StampPath& path, const kinematics::PartPath* rotary,
                                          const TakeNominal& take);
 
-/// The same for a path whose stamps come one by one.
+/// Does what follow_nominal_path() does for a path whose stamps come one by one.
 class NominalFollower {
  public:
   NominalFollower(const nc::Interpretation& program, const std::vector<bool>& selected,

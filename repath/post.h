@@ -3,7 +3,7 @@
 //
 // Every block under tool-centre-point control becomes one or more blocks whose X Y Z are those of the linear axes; the
 // rotary axes turn as they were programmed. A block is divided where the tip would leave its path by more than the
-// tolerance: the bound of joint_line.h and what rounding of the words adds. Back: blocks that turn axes, or run with
+// tolerance: the bound of joint_line and what rounding of the words adds. Back: blocks that turn axes, or run with
 // turned axes, come under tool-centre-point control, X Y Z become the tip, and are divided by the same bound. Every
 // other character of the program stays.
 #include <cstdint>

@@ -3,7 +3,7 @@
 //
 // A choice is kept as long as travel allows: a stretch of motion is followed without a jump in every choice. Choices
 // differ by whole turns of the rotary axes and, on chains whose tool comes to lie along the first rotary axis, by the
-// other branch, which leads from the other side to that pole (rotary_choice.h). Both give the tool the same direction
+// other branch, which leads from the other side to that pole (rotary_choice). Both give the tool the same direction
 // everywhere along the stretch. Where no choice lasts, a shortest path through (stretch, choice) decides where the axes
 // turn back: in air rather than in a cut.
 #include <cstdint>

@@ -58,7 +58,7 @@ struct StockProposal {
   bool in_the_way = false;  ///< rapids run through it, and no smaller box of use is clear of them
   std::string told{};       ///< the comment that gives it, with its line; empty: none, and the box is a guess
   std::string
-      finishes{};  ///< why the program only finishes what others have roughed (cut_depths.h); empty: it does not
+      finishes{};  ///< why the program only finishes what others have roughed (cut_depths.cpp); empty: it does not
   double allowance_mm = 0;  ///< that they will have left; 0 where `finishes` is empty
   std::string placed{};     ///< how a blank of which only the size is told was placed; empty: its place is told too
 };
@@ -107,8 +107,8 @@ struct JobProposal {
 
 /// job.toml text with comments; a job that runs as it stands. What a file says is a value with its source. What no file
 /// says is a typical value, marked "typical" or CHECK and named in the `assumed` of its table, with which every result
-/// begins (machine/assumptions.h): machine, material, what is open of the tools (tool_guess.h), the blank
-/// (stock_proposal.h) where no comment gives it.
+/// begins (machine/assumptions.h): machine, material, what is open of the tools (tool_guess), the blank
+/// (stock_proposal) where no comment gives it.
 std::string job_text(const JobProposal& proposal);
 
 }  // namespace camber::report

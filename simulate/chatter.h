@@ -1,7 +1,7 @@
 #pragma once
 // Chatter along a path: each tooth passing's depth over the depth at which it becomes unstable.
 //
-// The chips of a passing (deflection/chip_arc.h) have the mean directional matrix of one arc: its centre, its angle and
+// The chips of a passing (deflection/chip_arc) have the mean directional matrix of one arc: its centre, its angle and
 // its depth follow from the integrals of 1, cos 2 phi and sin 2 phi, int e^(2 i phi) dphi = e^(2 i centre) sin(angle)
 // over an arc. Of this cut the critical depth is looked up (dynamics/stability_table.h).
 #include <map>

@@ -19,7 +19,7 @@ struct ServerOptions {
   std::function<void(const std::string& url)> ready{};
 };
 
-/// Serves until SIGINT, SIGTERM or SIGHUP; runs that go on are stopped then. Requests that the guard (ui/guard.h)
+/// Serves until SIGINT, SIGTERM or SIGHUP; runs that go on are stopped then. Requests that the guard (ui/guard)
 /// refuses reach nothing else. Throws InputError where there is no such folder; [address] where the address or the port
 /// cannot be listened on.
 void serve(const ServerOptions& options);

@@ -66,7 +66,7 @@ double read_value(Cursor& at, Parameters& parameters);
 /// A formula: numbers, parameters, + - * / % ^, brackets, functions with or without brackets. Angles in degrees.
 double read_formula(Cursor& at, Parameters& parameters);
 
-/// Whether a text stands at the cursor: "..." or a QS parameter.
+/// Returns whether the cursor is at a text: "..." or a QS parameter.
 bool is_text(Cursor& at);
 
 /// A text: "..." and QS parameters joined by ||, TOCHAR, SUBSTR.

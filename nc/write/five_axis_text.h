@@ -26,12 +26,12 @@ namespace camber::nc {
 
 class BlockEdit {
  public:
-  /// Where a language adds words to a block.
+  /// Places at which a language adds words to a block.
   struct Layout {
-    std::string_view places = "XYZABC";  ///< letters behind which places go
-    std::string_view feed{};             ///< and further ones behind which the feed goes
-    std::string_view codes = "NGH";      ///< behind these, where the block has none of the others
-    /// Behind this position, where it has none of all these; kNowhere: in front of the first word.
+    std::string_view places = "XYZABC";  ///< new coordinates go behind words with these letters
+    std::string_view feed{};             ///< the feed goes behind words with these letters, too
+    std::string_view codes = "NGH";      ///< letters used where the block has none of the others
+    /// Position used where the block has none of all these; kNowhere: in front of the first word.
     std::size_t front = kNowhere;
     static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
   };
@@ -47,16 +47,16 @@ class BlockEdit {
   std::string_view number(const Word& word) const;
 
   void take_out(const Word& word);
-  /// A piece of the text, with the blank before it.
+  /// Takes out a piece of the text, with the blank before it.
   void take_out(std::size_t offset, std::size_t length);
-  /// The letter stays; `number`: its new text.
+  /// Replaces the number of a word and keeps its letter. `number`: the new text.
   void replace(const Word& word, const std::string& number);
   void replace(std::size_t offset, std::size_t length, std::string text);
-  /// Behind the words of places and codes that the block has. In the order of the calls.
+  /// Adds a word behind the block's words of places and codes, in the order of the calls.
   void add(char letter, const std::string& number);
-  /// Where the feed goes: FMAX.
+  /// Adds a word at the place of the feed, such as FMAX.
   void add_feed_word(const std::string& word);
-  /// In front of all words but N.
+  /// Adds a word in front of all words except N.
   void add_code(const std::string& word);
   /// Replaces the word with the letter, or adds it where there is none.
   void set(char letter, const std::string& number);
@@ -138,25 +138,25 @@ class FiveAxisText {
   virtual void take_out(BlockEdit& edit, const Word& word) const { edit.take_out(word); }
   /// Takes out the words of an arc, or of the tool's direction.
   virtual void take_out_curve(BlockEdit& edit, bool arc, bool direction) const = 0;
-  /// The block becomes a line or a rapid.
+  /// Makes the block a line or a rapid.
   virtual void make_line(BlockEdit& edit, bool rapid, bool in_force) const = 0;
-  /// Feeds that F takes the place of. True: there were some.
+  /// Takes out feeds that F replaces. Returns true if there were some.
   virtual bool take_out_other_feeds(BlockEdit&) const { return false; }
-  /// A further line beside a block.
+  /// Returns a further line beside a block.
   virtual std::string further_line(const BlockEdit& like, const LineWords& words) const;
-  /// A line of its own.
+  /// Returns a rapid on a line of its own.
   virtual std::string rapid_line(const std::vector<std::string>& words) const = 0;
-  /// Where the linear axes stand already, behind rewritten blocks. `steps`: coordinates count by increments here.
+  /// Returns lines that name where the linear axes already are, behind rewritten blocks. `steps`: in increments.
   virtual std::vector<std::string> place_lines(const std::vector<std::string>& words, bool rapid, bool steps) const = 0;
 
   // Feed
-  /// Why feeds cannot be written in this mode; empty: they can.
+  /// Returns why feeds cannot be written in this mode; empty: they can.
   virtual std::string feed_refused(FeedMode) const { return {}; }
-  /// The mode that a block of the given text switches on.
+  /// Returns the mode that a block of the given text switches on.
   virtual std::optional<FeedMode> feed_mode_of(std::uint32_t block) const = 0;
-  /// The block's own word of a mode gets this one; false: it has none.
+  /// Sets the block's own mode word to this mode. Returns false if it has none.
   virtual bool set_feed_mode(BlockEdit& edit, FeedMode mode) const = 0;
-  /// A line that switches the mode, sets F, or both.
+  /// Returns a line that switches the mode, sets F, or both.
   virtual std::string feed_line(std::optional<FeedMode> mode, const std::string& feed) const = 0;
 
   // One direction of the tool
@@ -172,7 +172,7 @@ class FiveAxisText {
   }
 
  protected:
-  /// What the line begins and ends with, beside its places.
+  /// Adds the words at the beginning and the end of the line, beside its places.
   virtual void add_motion(const LineWords& words, std::vector<std::string>& out) const = 0;
 
   const Program& program_;

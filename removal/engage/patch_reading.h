@@ -65,14 +65,14 @@ class PatchReading {
     reader.read(arena, stamp, b.patches, buffers_.local(), b.chips);
     return glance_of(b.chips);
   }
-  /// Those of `count` stamps; valid until the next call.
+  /// Returns the glances of `count` stamps; valid until the next call.
   std::span<const double> glance(const Reader& reader, const upright::TileArena& arena, std::size_t k,
                                  std::size_t count) {
     glances_.resize(count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { glances_[i] = glance(reader, arena, k + i); });
     return glances_;
   }
-  /// The same sum of chips that were read.
+  /// Returns the sum of a glance for chips that were read.
   double glance_of(std::span<const DeflectedChipSample> chips) const {
     double sum = 0;
     for (const DeflectedChipSample& c : chips)

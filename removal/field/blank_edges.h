@@ -32,9 +32,9 @@ class BlankEdges {
   /// Reads a cube of kAround voxels a side around a cell, from one voxel below its lowest on.
   using ReadAround = std::function<void(const std::array<int, 3>& cell, float* out)>;
 
-  /// `distance`: a tile's (Tile::kVolume). Values of band_mm and more are clipped.
+  /// Finds the edges of a tile. `distance`: values of the tile (Tile::kVolume); those of band_mm and more are clipped.
   void find(const float* distance, double voxel_mm, double band_mm, const ReadAround& read);
-  /// The same for the cells of one layer, i along x. Requires those below it, one after the other since clear().
+  /// As find(), for the cells of layer i along x. Requires that the layers below were read in order since clear().
   void find_in_layer(int i, const float* distance, double voxel_mm, double band_mm, const ReadAround& read);
   void clear();
   /// The faces that meet in the cell at this offset in the tile; none where the field is smooth.

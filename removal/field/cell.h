@@ -18,7 +18,7 @@ constexpr float kThinnestChip_mm = 1e-5f;
 /// A depth of more than this share of what the last motion allows ends at the surface of the tooth before.
 constexpr float kNearCap = 0.8f;
 
-/// A surface that the normal meets at a grazing angle is taken at no more than twenty times its distance.
+/// Least slope: a surface that the normal meets at a grazing angle counts at up to twenty times its distance.
 constexpr float kMinSlope = 0.05f;
 
 inline float slope(double along_normal) {
@@ -28,7 +28,7 @@ inline float slope(double along_normal) {
 /// Offset of corner c, 0 ... 7, of a cell from its lowest voxel; bit a of c goes along axis a.
 constexpr int cell_corner(int c) { return Tile::offset(c & 1, c >> 1 & 1, c >> 2 & 1); }
 
-/// Place in a cell, from its lowest voxel, in voxels.
+/// Position in a cell, from its lowest voxel, in voxels.
 using CellShare = std::array<float, 3>;
 
 inline float corner_weight(int c, const CellShare& f) {

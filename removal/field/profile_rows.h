@@ -16,7 +16,7 @@ class ProfileRows {
   /// Signed distances of places r[k] from the axis and z[k] above the tip: outside the nearest piece's, inside the same
   /// with the other sign (profile.h). Requires count <= kMost.
   void distances(const float* r, const float* z, int count, float* out) const;
-  /// The same for places above each other at r from the axis, the first at z, `step` apart.
+  /// As distances(), for places above each other at r from the axis, the first at z, `step` apart.
   void column(float r, float z, float step, int count, float* out) const;
 
  private:

@@ -8,12 +8,12 @@ namespace {  // compiled for several instruction sets
 struct Settling {
   static constexpr int kSteps = 32;
   static constexpr float kClose_mm = 1e-5f;
-  static constexpr int kFieldSteps = 16;  ///< where the field of a deflected cutter is read
+  static constexpr int kFieldSteps = 16;  ///< largest number of steps to read the field of a deflected cutter
   static constexpr float kFieldClose_mm = 5e-5f;
   static constexpr float kFlattest = 0.3f;  ///< slope of an envelope against a point's normal, at least
 
-  /// Where the deflection jumps against the motion of the edge, the envelope is torn, and the tooth draws the gap while
-  /// the deflection: there plain steps alternate between both sides, and smaller ones find the place between them.
+  /// Number of plain steps. Where the deflection jumps against the motion of the edge, the envelope is torn, and plain
+  /// steps alternate between both sides of the gap; the smaller steps that follow find the place between them.
   static constexpr int kPlainSteps = 5;
   static constexpr float share_of(int step) { return step < kPlainSteps ? 1.0f : step < 16 ? 0.3f : 0.1f; }
   /// Each plain step changes the place by a fraction of the step before it; this is the least such fraction that

@@ -19,8 +19,8 @@ struct ArenaLanes {
 
   static I to_int(const F& f) { return xsimd::batch_cast<std::int32_t>(f); }
 
-  /// Where voxels lie in the arena; outside it in the tile of air. bx, by, bz: whole numbers of voxels from the
-  /// stamp's.
+  /// Returns the index of voxels in the arena; of those outside it one in the tile of air. bx, by, bz: whole numbers of
+  /// voxels from the stamp's.
   static I cell_of(const StampPlace& s, const ArenaView& arena, const F& bx, const F& by, const F& bz) {
     const I x = to_int(bx) + I(s.base[0]), y = to_int(by) + I(s.base[1]), z = to_int(bz) + I(s.base[2]);
     const auto inside = (x >= I(0)) & (x < I(arena.n[0] * kCore)) & (y >= I(0)) & (y < I(arena.n[1] * kCore)) &

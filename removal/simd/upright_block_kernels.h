@@ -18,8 +18,8 @@ struct BlockBounds {
   const float* bottom;  ///< height of the lowest of the points
   const float* reach;   ///< if the voxel nearest to the centre has more than this, all points are in air, mm
   const float *nx, *ny, *nz, *spread;
-  /// Of blocks whose stamps are deflected, else null: the largest part of their normals that lies across the axis, and
-  /// their largest curvature, 1/mm.
+  /// Largest component of the normals across the axis, and largest curvature, 1/mm, of blocks whose stamps are
+  /// deflected; else null.
   const float *lateral = nullptr, *curvature = nullptr;
   static constexpr float kLevel =
       0.05f;  ///< below this lateral part a point counts as level: its envelope does not lean

@@ -23,20 +23,20 @@ struct PointLanes {
   const std::int32_t *lower, *step;  ///< node below, rotation step
 };
 
-/// How a stamp's cutter is deflected.
+/// Deflection of a stamp's cutter, and the limits that follow for its points.
 struct StampBend {
   DeflectionRow deflection;
   float lag_per_mm;
   float per_rad;      ///< rotation steps / (4 pi)
   float max_tilt_mm;  ///< largest tilt of the deflected envelope along the motion
   float reach_mm;     ///< points whose motion allows more than -reach_mm times their normal's lateral part are read
-  float axial_reach_mm = 0;  ///< the same of its axial part, added
+  float axial_reach_mm = 0;  ///< added to this limit: the same for the axial part of the normal
 };
 
 /// A stamp of any pose in the arena.
 struct TiltedPlace {
   StampPlace tip;        ///< its motion in the tool's frame
-  float turn_rad[3];     ///< how the tool turns meanwhile, in its frame
+  float turn_rad[3];     ///< rotation of the tool since the stamp before, in its frame
   float voxels[3][3];    ///< from the tip along each of the part's axes, by mm along the tool's x, y and z
   float max_tilt;        ///< largest tilt of the deflected envelope for each mm of motion
   float min_cap_per_mm;  ///< a point whose motion allows no more than this times its square makes no chip
@@ -129,13 +129,13 @@ struct Kernels {
   /// stock = max(stock, -cutter), at most band; voxels that change take the id.
   LineResult (*cut_line)(const LineCut& line);
   LineResult (*cut_line_deflected)(const LineCut& line, const LineDeflection& deflection);
-  /// The same with a stamp of its own for every column, as LineSearch has found them; `x` of the line; ids are
+  /// As cut_line, with a stamp of its own for every column, as LineSearch has found them; `x` of the line; ids are
   /// line.id + winner.
   LineResult (*cut_winners)(const LineCut& line, const LineSearch& search, const std::int32_t* id_of_tip);
   void (*find_winners)(const LineSearch& search);
 };
 
-/// Those of the widest vectors that this processor has.
+/// Returns the kernels for the widest vectors of this processor.
 const Kernels& kernels();
 extern const Kernels kBaseKernels;  ///< on every processor
 #if defined(__x86_64__)

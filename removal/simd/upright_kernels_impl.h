@@ -223,7 +223,7 @@ struct Vectors {
     return true;
   }
 
-  /// Where the straight cutter is, seen from the columns of a line: its axis, and the first voxel that it reaches.
+  /// Position of the straight cutter relative to the columns of a line: its axis, and the first voxel that it reaches.
   struct Columns {
     alignas(64) float rho[LineCut::kLine];
     alignas(64) std::int32_t low[LineCut::kLine];
@@ -314,9 +314,9 @@ struct Vectors {
     }
   }
 
-  /// How far in the cutter places are: of the straight one, and at most of one that is deflected by `outwards` in their
-  /// direction and by no more than `largest` in any, of it `axial` along the axis. A lateral deflection changes a
-  /// distance by no more than the radial part of its gradient; where that is 0, by nothing.
+  /// Depth of places inside the straight cutter, and their largest depth inside one that is deflected by `outwards` in
+  /// their direction, by at most `largest` in any, and by at most `axial` along the axis. A lateral deflection changes
+  /// a distance by at most its product with the radial part of the gradient.
   struct Inside {
     F straight, most;
     F radial;  ///< part of the gradient, at most

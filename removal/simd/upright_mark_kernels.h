@@ -44,7 +44,7 @@ struct NearCutters {
 };
 
 struct MarkKernels {
-  /// Which cutters a place is within the reach of, and the nearest of all.
+  /// Finds the cutters within whose reach a place lies, and the nearest of all.
   void (*find_near)(const CutterLanes& cutters, float x, float y, float z, NearCutters& out);
   /// Keeps those of near.within that another place is within the reach of, and finds the nearest of them. Under a flat
   /// bottom a lateral deflection changes nothing: there a place must lie inside the cutter. The list has room up to a

@@ -27,14 +27,14 @@ struct StampFrame {
   Vec3 axis() const { return to_part.col(2); }
 };
 
-/// How far points of the stock have moved against the cutter since the first stamp.
+/// Distance by which points of the stock have moved against the cutter since the first stamp.
 struct Way {
   double any_mm = 0;  ///< any point at most: what a stamp changes at a place differs by no more than the difference
   /// Up the cutter's axis, at most: what a stamp leaves above its lowest plane differs by no more than the difference.
   /// Less than before where the cutter draws back.
   double up_mm = 0;
 };
-/// The way of every stamp, for places within the stock.
+/// Returns the way of every stamp, for places within the stock.
 std::vector<Way> ways(std::span<const Stamp> stamps, const Vec3& stock_min_mm, const Vec3& stock_max_mm);
 
 /// Facts about the rows (along z) of a tile's voxels.
@@ -102,10 +102,10 @@ struct Carving {
   double shrink_mm = 0;  ///< the cutter is smaller by this
 };
 
-/// Whether carving needs to look at the tile.
+/// Returns whether carving needs to look at the tile.
 bool is_due(const RowsDue& rows, const Carving& stamp, const StampDeflection& deflection);
 
-/// stock = max(stock, -cutter) where that is more; voxels that change take the id. True where one did.
+/// Sets stock = max(stock, -cutter); voxels that change take the id. Returns true if one did.
 bool carve(Tile& tile, RowsDue& rows, const Index3& index, const Carving& stamp);
 
 /// With the deflected cutter.

@@ -13,16 +13,15 @@
 
 namespace camber::removal::upright {
 
-/// Of many stamps that reach a tile few change it: each voxel ends as one of them leaves it. So a tile goes in four
-/// blocks of columns; in each one stamps are passed over that change nothing there after the deepest one, or after what
-/// the block's middle column remembers (ColumnCover). Then every column is cut by the stamp of the rest that goes
-/// deepest near its surface, and only where another may still go deeper somewhere, by that one too.
-/// Rounded cylinders only (ball, flat and bull-nose).
+/// Cuts a tile by many stamps, of which few change it. The tile is divided into four blocks of columns. Each block
+/// skips stamps that cannot cut below the deepest one, or below what its middle column remembers (ColumnCover). Then
+/// every column is cut by the remaining stamp that goes deepest near its surface, and by another one only where that
+/// may go deeper somewhere. For rounded cylinders only (ball, flat and bull-nose).
 class BatchCut {
  public:
   BatchCut(const CutterShape& shape, double voxel_mm, double band_mm, double shrink_mm);
 
-  /// Cuts stamps[k] of all k of the batch; their ids are first_id + k. True where a voxel changed.
+  /// Cuts stamps[k] of all k of the batch; their ids are first_id + k. Returns true if a voxel changed.
   bool cut(Tile& tile, ColumnCover& cover, std::span<const Stamp> stamps, std::span<const std::int32_t> batch,
            std::int32_t first_id);
 

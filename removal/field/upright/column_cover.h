@@ -62,23 +62,23 @@ class ColumnCover {
     return {x_[at] < kNone, {x_[at], y_[at], z_[at]}, deflection_[at]};
   }
 
-  /// out[j] > 0: a stamp with this tip may change column (i, j); `deflection_mm` bounds how far it leans.
-  /// False when none of them may.
+  /// Sets out[j] > 0 where a stamp with this tip may change column (i, j); `deflection_mm` bounds its deflection.
+  /// Returns false if no column may change.
   bool changeable(int i, const Vec3& tip_mm, double deflection_mm, std::array<float, kLine>& out) const {
     return changeable(i, 0, kLine, from_origin(tip_mm), static_cast<float>(deflection_mm), out);
   }
   /// For columns j = first ... end - 1, whole vectors of 8; tips from the tile's voxel (0, 0, 0).
   bool changeable(int i, int first, int end, const Eigen::Vector3f& tip, float deflection_mm,
                   std::array<float, kLine>& out) const;
-  /// The same for lines i_from ... i_to - 1 of a block, its line l from out[l * kLine] on; a bit a line, the lowest for
-  /// i_from. An undeflected stamp.
+  /// As changeable(), for lines i_from ... i_to - 1 of a block and an undeflected stamp; line l is written from
+  /// out[l * kLine] on. Returns one bit a line, the lowest for i_from.
   std::uint32_t changeable_lines(int i_from, int i_to, int first, int end, const Eigen::Vector3f& tip,
                                  float* out) const;
-  /// With a stamp of its own for every column.
+  /// As changeable(), with a stamp of its own for every column.
   bool changeable_each(int i, int first, int end, const float* x, const float* y, const float* z,
                        std::array<float, kLine>& out) const;
 
-  /// False when this stamp, coming right after the one given, can change nothing in the tile.
+  /// Returns false if this stamp, coming right after the given one, can change nothing in the tile.
   bool changeable_after(const Vec3& before_mm, double before_deflection_mm, const Vec3& tip_mm,
                         double deflection_mm) const;
 

@@ -86,19 +86,19 @@ class TileArena {
   void read_tops(int reach_voxels, const std::function<const ColumnCover&(std::size_t tile)>& cover_of);
 
   ArenaView view() const;
-  /// Place of a stamp that moves at most by its feed; see StampPlace::min_forward_mm.
+  /// Returns the place of a stamp that moves at most by its feed; see StampPlace::min_forward_mm.
   StampPlace place_of(const Stamp& stamp, double min_forward_mm) const;
 
  protected:
   std::size_t take_number(const Index3& index);
   void make_room(std::size_t tiles);
-  /// The tile and its blank, as the stocks have them, with the blank's edges.
+  /// Reads the tile and its blank from the stocks, with the blank's edges.
   void read_tile(std::size_t tile, const Stock& stock, const Stock* blank);
-  /// The same without edges: find_edges() has to follow. False where the blank has none.
+  /// As read_tile(), without edges: find_edges() has to follow. Returns false where the blank has none.
   bool read_fields(std::size_t tile, const Stock& stock, const Stock* blank);
-  /// In one layer of the tile's cells, which follows the one before.
+  /// Finds the blank's edges in one layer of the tile's cells; layers must be given in order.
   void find_edges(std::size_t tile, int layer, const Stock& blank);
-  /// Its upper layer from the neighbours that are there, but for those that `is_read` says are as the stock has them.
+  /// Copies the tile's upper layer from the neighbours in the arena, except those that `is_read` names as unchanged.
   template <class IsRead>
   void share_upper_layer(std::size_t tile, IsRead is_read);
 
