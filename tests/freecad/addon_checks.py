@@ -60,7 +60,7 @@ class AddOn(unittest.TestCase):
         self.job.CamberMaterial = "C45"
         self.job.CamberVoxel = 0.8
         self.job.CamberForceLimit = 0
-        self.job.CamberTolerance, self.job.CamberGoal = 20, "tolerance"
+        self.job.CamberTolerance, self.job.CamberGoal, self.job.CamberLevers = 20, "tolerance", "shift"
         self.job.PostProcessor, self.job.PostProcessorArgs = "linuxcnc", "--no-show-editor"
         for controller in self.job.Tools.Group:
             controller.CamberOverhang = 12 if controller.ToolNumber == 1 else 20
@@ -82,6 +82,10 @@ class AddOn(unittest.TestCase):
         self.assertIn("box_mm = [[-1.000000, -1.000000, -7.000000], [25.000000, 19.000000, 1.000000]]", text)
         self.assertIn("[tool.1]\nfrom = 1\nflutes = 4\noverhang_mm = 12.000000\nflute_length_mm = 12.000000\n"
                       "helix_deg = 30\nroot_stiffness_N_per_um = 20.000000\n", text)
+        self.assertIn('goal = "tolerance"\nlevers = ["shift"]\n', text)
+        self.job.CamberLevers = "shift,feed"
+        with open(self.files("feeds").toml) as file:
+            self.assertNotIn("levers", file.read())
         self.assertEqual([span.label for span in files.spans],
                          ["G54", "TC: 6mm Ball End", "Surface", "TC: 5mm Endmill", "Pocket", "Profile"])
         self.assertEqual(operations.operation_at(files.spans, files.spans[2].first + 3).Label, "Surface")

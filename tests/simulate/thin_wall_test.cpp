@@ -286,6 +286,23 @@ TEST(ThinWallSlow, StaticCouplingLeavesThePlatesEquilibrium) {
   }
 }
 
+// A tool that leans along the wall, as in five axes, makes the same surface: the chips and the forces are turned by 3
+// degrees within the wall's plane.
+TEST(ThinWallSlow, ALeaningToolBendsTheWallAlike) {
+  const Scene upright(24);
+  Scene leaning(24);
+  for (removal::Stamp& s : leaning.path.stamps)
+    s.pose = pose_of_frame(s.pose.tip_mm, Vec3(std::sin(3 * kPi / 180), 0, std::cos(3 * kPi / 180)), Vec3::UnitX());
+  constexpr double kAt = 30;
+  const CutWall expected = cut_wall(upright, machine::Coupling::static_, kAt);
+  const CutWall cut = cut_wall(leaning, machine::Coupling::static_, kAt);
+  EXPECT_EQ(cut.unsettled, 0u);
+  for (const int z : {1, 2, 3}) {
+    EXPECT_NEAR(cut.total_um.at(z), expected.total_um.at(z), 0.03 * expected.total_um.at(z)) << z;
+    EXPECT_NEAR(cut.part_um.at(z), expected.part_um.at(z), 0.03 * expected.part_um.at(z)) << z;
+  }
+}
+
 // What compensation emits for such a wall: a level is cut up to an allowance, and again past its surface.
 TEST(ThinWallSlow, FurtherCutsLeaveThePlatesEquilibrium) {
   tests::LargestFigure walls("form error of a level that is cut three times, of what it springs back", 0.1);

@@ -108,6 +108,8 @@ def _simulation(job, box):
 
 def _compensation(job):
     out = "\n[compensation]\ntolerance_um = %.6f\ngoal = %s\n" % (job.CamberTolerance, _quoted(job.CamberGoal))
+    if job.CamberLevers == "shift":  # the others are the default
+        out += 'levers = ["shift"]\n'
     if job.CamberWorkOffset.strip():
         try:
             numbers = [float(word) for word in job.CamberWorkOffset.replace(",", " ").split()]

@@ -24,6 +24,7 @@ def parser():
     out.add_argument("--tolerance-um", type=float, help="tolerance of the surface")
     out.add_argument("--goal", choices=("best", "tolerance"),
                      help="tolerance: stop where it is reached, which is sooner")
+    out.add_argument("--levers", choices=("shift,feed", "shift"), help="shift: the feeds stay as they are")
     out.add_argument("--voxel-mm", type=float, help="width of the voxels")
     out.add_argument("--force-limit-N", type=float, help="of adapt")
     out.add_argument("--power-limit-W", type=float, help="of adapt")
@@ -51,7 +52,7 @@ def _take(options, job):
     settings.prepare(job)
     for name, value in (("CamberMachine", options.machine), ("CamberMaterial", options.material),
                         ("CamberTolerance", options.tolerance_um), ("CamberGoal", options.goal),
-                        ("CamberVoxel", options.voxel_mm),
+                        ("CamberLevers", options.levers), ("CamberVoxel", options.voxel_mm),
                         ("CamberForceLimit", options.force_limit_N), ("CamberPowerLimit", options.power_limit_W)):
         if value is not None:
             setattr(job, name, value)

@@ -12,6 +12,8 @@ JOB_PROPERTIES = [
     ("CamberTolerance", "App::PropertyFloat", 5.0, "Tolerance of the surface in micrometres"),
     ("CamberGoal", "App::PropertyEnumeration", ["best", "tolerance"],
      "Compensate until no round helps any more (best), or until the tolerance is reached: sooner"),
+    ("CamberLevers", "App::PropertyEnumeration", ["shift,feed", "shift"],
+     "Compensate: move the path and lower feeds where that pays (shift,feed), or move the path alone (shift)"),
     ("CamberForceLimit", "App::PropertyFloat", 0.0, "Adapt feeds: largest force across the tool in N; 0: not limited"),
     ("CamberPowerLimit", "App::PropertyFloat", 0.0, "Adapt feeds: largest power of the cut in W; 0: not limited"),
     ("CamberWorkOffset", "App::PropertyString", "",
