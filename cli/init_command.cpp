@@ -104,10 +104,7 @@ bool wants_axes(const Diagnostic& d) {
   return d.check == "rotary-axis" || d.check == "tilted-plane" || d.check == "not-read";
 }
 
-/// A cutter of which nothing says the diameter; as report::job_text() proposes it.
-constexpr double kCutter_mm = 10;
-
-/// The moves. Where cycles ask for the radius of cutters, those of the job's first proposal.
+/// The moves. Where cycles ask for the radius of cutters: the usual one, or the largest with which they fit.
 nc::Interpretation moves_of(const nc::Program& text, nc::InterpreterOptions options, Diagnostics& diagnostics) {
   Diagnostics of_first = diagnostics;
   nc::Interpretation first = nc::interpret(text, options, of_first);
@@ -118,12 +115,22 @@ nc::Interpretation moves_of(const nc::Program& text, nc::InterpreterOptions opti
     diagnostics = std::move(of_first);
     return first;
   }
-  for (const nc::ModalState& state : first.states)
-    nc::set_cutter_radius(options.tool_offsets, state.tool, kCutter_mm / 2);
-  for (const nc::Event& e : first.events)
-    if (e.kind == nc::EventKind::tool_change)
-      nc::set_cutter_radius(options.tool_offsets, static_cast<int>(e.value), kCutter_mm / 2);
-  return nc::interpret(text, options, diagnostics);
+  for (const double diameter_mm : {report::kUsualDiameter_mm, 8.0, 6.0, 5.0, 4.0, 3.0, 2.0}) {
+    for (const nc::ModalState& state : first.states)
+      nc::set_cutter_radius(options.tool_offsets, state.tool, diameter_mm / 2);
+    for (const nc::Event& e : first.events)
+      if (e.kind == nc::EventKind::tool_change)
+        nc::set_cutter_radius(options.tool_offsets, static_cast<int>(e.value), diameter_mm / 2);
+    Diagnostics of_cutter = diagnostics;
+    first = nc::interpret(text, options, of_cutter);
+    const bool too_large = std::ranges::any_of(of_cutter.all(), [](const Diagnostic& d) {
+      return d.message.find("smaller than the tool") != std::string::npos;
+    });
+    if (too_large && diameter_mm > 2) continue;
+    diagnostics = std::move(of_cutter);
+    break;
+  }
+  return first;
 }
 
 /// The moves; where no machine is named and the program turns rotary axes, those of a machine that has them. What such

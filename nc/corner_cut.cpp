@@ -114,7 +114,7 @@ Side side_of(const TextMove& move, const PlaneAxes& axes, bool at_end) {
 }  // namespace
 
 CornerCutResult cut_corner(Interpretation& program, const CornerCut& corner) {
-  const auto fail = [](std::string message) { return CornerCutResult{std::move(message), std::nullopt}; };
+  const auto fail = [](std::string message) { return CornerCutResult{.error = std::move(message), .between = {}}; };
   Move &a = program.moves[corner.before], &b = program.moves[corner.after];
   const Frame frame = program.frame_of(a);
   const PlaneAxes axes = axes_of(corner.plane);
@@ -126,18 +126,34 @@ CornerCutResult cut_corner(Interpretation& program, const CornerCut& corner) {
     return fail(fmt::format("{} beside a move that leaves the plane {}; two moves in it were expected", corner.text,
                             corner.plane_name));
   const Side side_a = side_of(text_a, axes, true), side_b = side_of(text_b, axes, false);
-  if (side_a.length <= kStillMm || side_b.length <= kStillMm)
+  const bool still = side_a.length <= kStillMm || side_b.length <= kStillMm;
+  if (still && corner.may_shrink) return {.error = {}, .between = {}, .shrunk = true};
+  if (still)
     return fail(fmt::format("{} beside a move without length; two moves in the plane were expected", corner.text));
   const Vec2 at(text_a.end_mm[axes.first], text_a.end_mm[axes.second]);
   const double turn = angle_between(side_a.direction, side_b.direction);
   if (corner.size_mm == 0 || std::abs(turn) < kTangentRad) return {};  // nothing to round
 
-  std::optional<Rounding> cut;
-  if (corner.chamfer) {
-    const auto from = at_distance(side_a, at, corner.size_mm, -1), to = at_distance(side_b, at, corner.size_mm, 1);
-    if (from && to) cut = Rounding{*from, *to, Vec2::Zero()};
-  } else if (std::abs(turn) < kPi - kTangentRad) {
-    cut = rounding_at(side_a, side_b, at, corner.size_mm, turn > 0);
+  const auto cut_of = [&](double size) -> std::optional<Rounding> {
+    if (corner.chamfer) {
+      const auto from = at_distance(side_a, at, size, -1), to = at_distance(side_b, at, size, 1);
+      return from && to ? std::optional(Rounding{*from, *to, Vec2::Zero()}) : std::nullopt;
+    }
+    if (std::abs(turn) >= kPi - kTangentRad) return std::nullopt;
+    return rounding_at(side_a, side_b, at, size, turn > 0);
+  };
+  const auto fits = [&](const std::optional<Rounding>& r, double tolerance_mm) {
+    return r && r->before.length <= side_a.length + tolerance_mm && r->behind.length <= side_b.length + tolerance_mm;
+  };
+  std::optional<Rounding> cut = cut_of(corner.size_mm);
+  const bool shrunk = corner.may_shrink && !fits(cut, kTooShortMm);
+  if (shrunk) {
+    double low = 0, high = corner.size_mm;
+    for (int i = 0; i < 60; ++i) {
+      const double size = 0.5 * (low + high);
+      (fits(cut_of(size), 0) ? low : high) = size;
+    }
+    cut = cut_of(low);
   }
   if (!cut) return fail(fmt::format("{} does not fit into the corner with the next block", corner.text));
   const auto too_long = [&](const Cut& c, const Side& side, const char* which) {
@@ -183,7 +199,7 @@ CornerCutResult cut_corner(Interpretation& program, const CornerCut& corner) {
     between.kind = MoveKind::arc;
     between.arc = static_cast<std::uint32_t>(program.arcs.size() - 1);
   }
-  return {{}, between};
+  return {.error = {}, .between = between, .shrunk = shrunk};
 }
 
 }  // namespace camber::nc

@@ -137,7 +137,7 @@ class RadiusCompensation {
     const Element& entry = elements_.front();
     if (entry.arc)
       problem(entry.move, "compensation begins on an arc; a straight entry move (G0, G1) was expected");
-    else if (entry.length() <= std::abs(cutter_.radius_mm))
+    else if (entry.length() <= std::abs(cutter_.radius_mm) && !(cutter_.entry_square_to_next && !cutter_.corner_lines))
       problem(entry.move,
               fmt::format("the entry move is {:.4f} mm long; more than the radius was expected", entry.length()));
   }

@@ -93,8 +93,8 @@ bool only_drills(const nc::Interpretation& moves, int tool) {
 }
 
 double standard_diameter_mm(double step_mm) {
-  constexpr double kUsual_mm = 10, kStepFraction = 0.75;
-  if (step_mm <= 0) return kUsual_mm;
+  constexpr double kStepFraction = 0.75;
+  if (step_mm <= 0) return kUsualDiameter_mm;
   const auto at =
       std::ranges::find_if(kStandardDiameters_mm, [&](double d) { return d >= step_mm / kStepFraction - 0.5; });
   return at == kStandardDiameters_mm.end() ? kStandardDiameters_mm.back() : *at;

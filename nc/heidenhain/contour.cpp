@@ -129,7 +129,13 @@ void Klartext::start_approach(const Statement& s, const BlockValues& b, std::opt
   prepare_cutting("APPR", 7);
   relied_ends_.add(out_.moves);
   if (b.compensation) set_compensation(*b.compensation, s.begin);
-  a.side = b.compensation && *b.compensation == 2 ? -1 : 1;
+  a.has_side = b.compensation ? *b.compensation == 1 || *b.compensation == 2 : radius_.active;
+  a.side = a.has_side && (b.compensation ? *b.compensation == 1 : radius_.left) ? 1 : -1;
+  if (!a.has_side && (*form == Form::normal_line || *form == Form::arc))
+    warn(s.begin, "approach",
+         "APPR LN or CT without RL or RR is read as with RR, as an iTNC 530 goes; later controls stop here; RL or RR "
+         "was expected",
+         "APPR");
   a.move = out_.moves.size();
   approach_ = a;
   position_mm_ = end_in_moves(a.start_mm, 7);
@@ -145,7 +151,7 @@ bool Klartext::positioned_at_rapid() const {
 
 /// `contour`: the first move of the contour.
 void Klartext::finish_approach(std::size_t contour) {
-  const Approach a = std::exchange(approach_, {});
+  Approach a = std::exchange(approach_, {});
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   Vec3 along = frame_.inverse * direction_at(out_, out_.moves[contour], 0);
   along[axes.normal] = 0;
@@ -156,6 +162,9 @@ void Klartext::finish_approach(std::size_t contour) {
   Vec3 left = Vec3::Zero();
   left[axes.first] = -along[axes.second];
   left[axes.second] = along[axes.first];
+  // Without RL and RR an arc begins on the side from which the tool comes.
+  if (!a.has_side && a.form == Form::line_and_arc) a.side = left.dot(a.from_mm - a.start_mm) >= 0 ? 1 : -1;
+  last_compensation_ = a.side > 0 ? 1 : 2;
   left *= a.side;
   std::vector<Move> way;
   const auto add = [&](const Vec3& to, std::optional<Arc> arc) {

@@ -68,20 +68,22 @@ void Klartext::define_cycle(const Statement& s) {
   if (refused != kRefused.end()) return pass();
   if (*number < 200) return define_old_cycle(*number, part, at, s);
 
+  if (*number != 247 && *number != 220 && *number != 221) pass();  // until the end of the definition is read
   // The name, then the parameters.
-  while (at.more()) {
+  for (bool named = false; at.more();) {
     const std::size_t begin = at.offset();
     Cursor parameter = at;
     const auto name = read_parameter(parameter);
     if (!name || !parameter.accept('=')) {
       at.go_to(begin);
-      if (at.word().find('=') != std::string::npos)
+      if (named || at.word().find('=') != std::string::npos)
         throw FormulaError(begin, "not-a-word",
                            fmt::format("{} in CYCL DEF {}; Q parameters were expected", at.word(), *number));
       at.go_to(begin + 1);
       continue;
     }
     at = parameter;
+    named = true;
     if (at.accept_prefix("FMAX"))
       parameters_.set(*name, kFastFeed);
     else if (at.accept_prefix("FAUTO"))
@@ -107,16 +109,14 @@ void Klartext::define_cycle(const Statement& s) {
   }
   if (*number == 220 || *number == 221) return run_pattern(*number);
   if (*number >= 300) {
-    warn(s.begin, "machine-cycle",
-         fmt::format("CYCL DEF {} is a cycle of the machine's maker; what it does is not known, and it is passed over",
-                     *number));
-    return pass();
+    return warn(
+        s.begin, "machine-cycle",
+        fmt::format("CYCL DEF {} is a cycle of the machine's maker; what it does is not known, and it is passed over",
+                    *number));
   }
-  if (std::ranges::find(kMade, *number) == kMade.end()) {
-    pass();
+  if (std::ranges::find(kMade, *number) == kMade.end())
     return error(s.begin, "not-supported",
                  fmt::format("CYCL DEF {} is not supported; 200 to 209, 240, 241, 251 and 252 were expected", *number));
-  }
   cycle_ = {};
   cycle_.number = *number;
   cycle_.offset = s.begin;
@@ -124,22 +124,19 @@ void Klartext::define_cycle(const Statement& s) {
 
 /// Cycles in parts, CYCL DEF 7.1: each part has one value.
 void Klartext::define_old_cycle(int number, int part, Cursor at, const Statement& s) {
+  const bool in_parts = number == 7 || number == 8 || number == 10 || number == 11 || number == 26;
+  if (in_parts && part <= 0) return;
   switch (number) {
     case 7:
-      if (part > 0) shift_datum(at, s.begin);
-      return;
+      return shift_datum(at, s.begin);
     case 8:
-      if (part > 0) set_mirror(at);
-      return;
+      return set_mirror(at);
     case 10:
-      if (part > 0) set_rotation(at);
-      return;
+      return set_rotation(at);
     case 11:
-      if (part > 0) set_scale(at);
-      return;
+      return set_scale(at);
     case 26:
-      if (part > 0) set_axis_scale(at);
-      return;
+      return set_axis_scale(at);
     case 19:
       return set_working_plane(at, part);
     case 32:
@@ -191,10 +188,10 @@ void Klartext::define_old_cycle(int number, int part, Cursor at, const Statement
       at.advance(word.size());
       cycle_.sense = at.peek() == '-' ? -1 : 1;
       at.advance();
-    } else if (word == "F" && begins_number_behind(at)) {
-      at.advance();
+    } else if (Cursor behind = at; word == "F" && (behind.advance(), begins_number(behind))) {
+      at = behind;
       feed = known(read_value(at, parameters_), begin);
-    } else if (word.starts_with('Q') && read_parameter_here(at)) {
+    } else if (Cursor ahead = at; word.starts_with('Q') && read_parameter(ahead)) {
       value = known(read_value(at, parameters_), begin);
     } else if (!word.empty()) {
       at.advance(word.size());
@@ -218,13 +215,6 @@ void Klartext::define_old_cycle(int number, int part, Cursor at, const Statement
   if (cycle_.number != number) return;
   if (value) cycle_.values[part] = *value;
   if (feed) cycle_.feeds[part] = mm_per_s_from_mm_per_min(*feed * unit_mm());
-}
-
-bool Klartext::read_parameter_here(Cursor at) { return read_parameter(at).has_value(); }
-
-bool Klartext::begins_number_behind(Cursor at) {
-  at.advance();
-  return begins_number(at);
 }
 
 /// CYCL DEF 32.1 T0.05, 32.2 HSC-MODE:1 TA0.5; 32.1 without a value: off.
@@ -301,9 +291,11 @@ void Klartext::run_cycle_call(const Statement& s) {
         BlockValues b;
         b.feed = known(read_value(at, parameters_), begin);
         set_feed(b);
-      } else if (place && c >= 'X' && c <= 'Z') {
-        (*place)[c - 'X'] = known(read_value(at, parameters_), begin) * unit_mm();
-        given = static_cast<std::uint8_t>(given | 1U << (c - 'X'));
+      } else if (const char axis = c == 'I' ? at.peek() : c; place && axis >= 'X' && axis <= 'Z') {
+        if (c == 'I') at.advance();
+        double& value = (*place)[axis - 'X'];
+        value = (c == 'I' ? value : 0) + known(read_value(at, parameters_), begin) * unit_mm();
+        given = static_cast<std::uint8_t>(given | 1U << (axis - 'X'));
       } else {
         at.go_to(begin);
         throw FormulaError(begin, "not-a-word", fmt::format("{} in CYCL CALL; M or F was expected", at.word()));
@@ -408,7 +400,6 @@ void Klartext::cycle_move(MoveKind kind, const Vec3& programmed_end, double feed
 void Klartext::drill_hole(const Hole& h) {
   const int normal = tool_axis_;
   const double top = h.surface_mm + h.clearance_mm, bottom = h.surface_mm + h.depth_mm;
-  const auto height = [&] { return programmed()[normal]; };
   const auto go = [&](MoveKind kind, double to, double feed) {
     Vec3 end = programmed();
     end[normal] = to;
@@ -468,7 +459,6 @@ void Klartext::drill_hole(const Hole& h) {
     go(MoveKind::rapid, top, 0);
   go(MoveKind::rapid, std::max(top, h.surface_mm + h.second_mm), 0);
   if (off != Vec3::Zero()) cycle_move(MoveKind::rapid, programmed() - off, 0);
-  (void)height;
 }
 
 /// Cycles 200 to 209, 240, 241 at the place of the tool.
@@ -492,6 +482,7 @@ void Klartext::drill(int number) {
     case 200:
       h.feed_mm_per_s = feed_q(206);
       h.peck_mm = q(202) * unit;
+      h.above_mm = h.clearance_mm;
       h.dwell_top_s = q_if_set(210).value_or(0);
       cycle_g_ = h.peck_mm < -h.depth_mm ? 83 : h.dwell_s > 0 ? 82 : 81;
       break;
@@ -518,6 +509,7 @@ void Klartext::drill(int number) {
     }
     case 203: {
       h.feed_mm_per_s = feed_q(206);
+      h.above_mm = h.clearance_mm;
       h.peck_mm = q(202) * unit;
       h.less_mm = q_if_set(212).value_or(0) * unit;
       h.least_mm = q_if_set(205).value_or(0) * unit;
@@ -566,7 +558,6 @@ void Klartext::drill(int number) {
       break;
     case 240:
       h.feed_mm_per_s = feed_q(206);
-      h.dwell_s = q_if_set(211).value_or(0);
       if (q_if_set(343).value_or(0) == 1) {
         // By the diameter of the cone: the point angle is in the tool table; 90 degrees are taken.
         h.depth_mm = -0.5 * std::abs(q(344)) * unit;
@@ -649,6 +640,7 @@ void Klartext::drill_old() {
   };
   if (cycle_.number == 1) {
     h.peck_mm = std::abs(value(3)) * unit;
+    h.above_mm = std::clamp(-h.depth_mm / 50, 0.6, 7.0);  // t of the manuals
     h.dwell_s = cycle_.values.contains(4) ? value(4) : 0;
     h.feed_mm_per_s = feed(5);
     cycle_g_ = h.peck_mm < -h.depth_mm ? 83 : 81;
@@ -749,78 +741,9 @@ void Klartext::mill_bore() {
   go(MoveKind::rapid, high);
 }
 
-/// Cycles 4 and 5: a pocket from its middle outwards, in depths. The tool stands at the clearance above the middle.
-void Klartext::mill_old_pocket() {
-  const double unit = unit_mm();
-  const bool round = cycle_.number == 5;
-  const auto tool = cutter_radius_mm();
-  if (!tool || *tool <= 0)
-    throw FormulaError(
-        cycle_.offset, "radius-unknown",
-        fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
-                    "with R, or the finished path, was expected",
-                    cycle_.number, state_.tool, state_.tool));
-  const auto value = [&](int part) {
-    const auto found = cycle_.values.find(part);
-    if (found == cycle_.values.end())
-      throw FormulaError(cycle_.offset, "cycle",
-                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
-    return found->second * unit;
-  };
-  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
-  const double clearance = std::abs(value(1)), depth = std::abs(value(2)), step = std::abs(value(3));
-  const double plunge = cycle_.feeds.contains(3) ? cycle_.feeds[3] : feed_.value_or(0);
-  const int feed_part = round ? 5 : 6;
-  const double feed = cycle_.feeds.contains(feed_part) ? cycle_.feeds[feed_part] : feed_.value_or(0);
-  if (plunge <= 0 || feed <= 0)
-    throw FormulaError(cycle_.offset, "feed-missing", "the pocket has no feed; F was expected in its parts");
-  if (step <= 0)
-    throw FormulaError(cycle_.offset, "cycle", "the pocket has no depth of each cut; its part 3 was expected");
-  const double half_x = round ? value(4) - *tool : 0.5 * std::abs(value(4)) - *tool;
-  const double half_y = round ? half_x : 0.5 * std::abs(value(5)) - *tool;
-  if (half_x < -1e-9 || half_y < -1e-9)
-    throw FormulaError(cycle_.offset, "cycle", "the pocket is smaller than the tool");
-  constexpr double kOverlap = 1.4;  // of the radius: MP7430
-  const double sideways = kOverlap * *tool;
-  const double surface = programmed()[axes.normal] - clearance, sense = cycle_.sense;
-  const Vec3 middle = programmed();
-  prepare_cutting("a cycle", 0);
-  const auto at = [&](double x, double y, double z) {
-    Vec3 p = middle;
-    p[axes.first] += x;
-    p[axes.second] += y;
-    p[axes.normal] = z;
-    return p;
-  };
-  for (double z = surface; z > surface - depth + 1e-9;) {
-    z = std::max(z - step, surface - depth);
-    cycle_move(MoveKind::linear, at(0, 0, z), plunge);
-    const int rings = static_cast<int>(std::ceil(std::max(1e-9, round ? half_x : std::min(half_x, half_y)) / sideways));
-    for (int i = 1; i <= rings; ++i) {
-      const double away = (round ? half_x : std::min(half_x, half_y)) * i / rings;
-      if (away < 1e-6) break;
-      if (round) {
-        cycle_move(MoveKind::linear, at(away, 0, z), feed);
-        cycle_circle(middle, sense * 2 * kPi, z, feed);
-        continue;
-      }
-      const double x = half_x - (std::min(half_x, half_y) - away), y = half_y - (std::min(half_x, half_y) - away);
-      cycle_move(MoveKind::linear, at(x, 0, z), feed);
-      const double first = sense > 0 ? y : -y;
-      cycle_move(MoveKind::linear, at(x, first, z), feed);
-      cycle_move(MoveKind::linear, at(-x, first, z), feed);
-      cycle_move(MoveKind::linear, at(-x, -first, z), feed);
-      cycle_move(MoveKind::linear, at(x, -first, z), feed);
-      cycle_move(MoveKind::linear, at(x, 0, z), feed);
-    }
-    cycle_move(MoveKind::linear, at(0, 0, z), feed);
-  }
-  cycle_move(MoveKind::rapid, middle, 0);
-}
+// --- pockets: cycles 4, 5, 251 and 252
 
-// --- cycles 251 and 252
-
-/// A pocket as cycle 251 (rectangular) or 252 (circular) mills it, in programmed coordinates.
+/// A pocket as cycle 4 or 251 (rectangular), 5 or 252 (circular) mills it, in programmed coordinates.
 struct Klartext::Pocket {
   bool round = false;
   Vec3 middle_mm = Vec3::Zero();
@@ -881,6 +804,58 @@ void Klartext::mill_pocket_level(const Pocket& pocket, double height_mm, double 
     }
     cycle_move(MoveKind::linear, at(x, 0), pocket.feed_mm_per_s);
   }
+}
+
+/// Cycles 4 and 5: a pocket from its middle outwards, in depths. The tool stands at the clearance above the middle.
+void Klartext::mill_old_pocket() {
+  const double unit = unit_mm();
+  const bool round = cycle_.number == 5;
+  const auto tool = cutter_radius_mm();
+  if (!tool || *tool <= 0)
+    throw FormulaError(
+        cycle_.offset, "radius-unknown",
+        fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
+                    "with R, or the finished path, was expected",
+                    cycle_.number, state_.tool, state_.tool));
+  const auto value = [&](int part) {
+    const auto found = cycle_.values.find(part);
+    if (found == cycle_.values.end())
+      throw FormulaError(cycle_.offset, "cycle",
+                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
+    return found->second * unit;
+  };
+  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+  const double clearance = std::abs(value(1)), depth = std::abs(value(2)), step = std::abs(value(3));
+  const double plunge = cycle_.feeds.contains(3) ? cycle_.feeds[3] : feed_.value_or(0);
+  const int feed_part = round ? 5 : 6;
+  const double feed = cycle_.feeds.contains(feed_part) ? cycle_.feeds[feed_part] : feed_.value_or(0);
+  if (plunge <= 0 || feed <= 0)
+    throw FormulaError(cycle_.offset, "feed-missing", "the pocket has no feed; F was expected in its parts");
+  if (step <= 0)
+    throw FormulaError(cycle_.offset, "cycle", "the pocket has no depth of each cut; its part 3 was expected");
+  Pocket pocket;
+  pocket.round = round;
+  pocket.half_mm[0] = round ? value(4) - *tool : 0.5 * std::abs(value(4)) - *tool;
+  pocket.half_mm[1] = round ? pocket.half_mm[0] : 0.5 * std::abs(value(5)) - *tool;
+  if (pocket.least_mm() < -1e-9 || pocket.half_mm[1] < -1e-9)
+    throw FormulaError(cycle_.offset, "cycle", "the pocket is smaller than the tool");
+  constexpr double kOverlap = 1.4;  // of the radius: MP7430
+  pocket.sideways_mm = kOverlap * *tool;
+  pocket.sense = cycle_.sense;
+  pocket.feed_mm_per_s = feed;
+  pocket.middle_mm = programmed();
+  const Vec3 middle = pocket.middle_mm;
+  const double surface = middle[axes.normal] - clearance;
+  prepare_cutting("a cycle", 0);
+  for (double z = surface; z > surface - depth + 1e-9;) {
+    z = std::max(z - step, surface - depth);
+    Vec3 floor = middle;
+    floor[axes.normal] = z;
+    cycle_move(MoveKind::linear, floor, plunge);
+    mill_pocket_level(pocket, z, pocket.least_mm(), 0);
+    cycle_move(MoveKind::linear, floor, feed);
+  }
+  cycle_move(MoveKind::rapid, middle, 0);
 }
 
 /// Roughing from the middle outwards in depths of Q202, up to the allowances; then the walls in depths of Q338, and the

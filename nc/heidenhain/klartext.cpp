@@ -100,30 +100,11 @@ bool Klartext::step() {
 }
 
 void Klartext::execute(const Statement& s) {
+  if (has_words(s.kind)) return run_path(s);
   switch (s.kind) {
-    case Kind::nothing:
-    case Kind::passed:
-    case Kind::begin_program:
-      break;
     case Kind::end_program:
       note_rest(s);
       end_program();
-      break;
-    case Kind::line:
-    case Kind::normal_line:
-    case Kind::polar_line:
-    case Kind::circle:
-    case Kind::radius_arc:
-    case Kind::tangent_arc:
-    case Kind::polar_circle:
-    case Kind::polar_tangent_arc:
-    case Kind::centre:
-    case Kind::rounding:
-    case Kind::chamfer:
-    case Kind::approach:
-    case Kind::departure:
-    case Kind::functions:
-      run_path(s);
       break;
     case Kind::tool_call:
       call_tool(s);
@@ -135,8 +116,8 @@ void Klartext::execute(const Statement& s) {
       read_blank_form(s);
       break;
     case Kind::label: {
-      Cursor at = cursor(s);
-      if (label_name(at) == "0" && !level().is_program) levels_.pop_back();
+      const auto number = cursor(s).integer();
+      if (number && *number == 0 && !level().is_program) levels_.pop_back();
       break;
     }
     case Kind::call_label:
@@ -187,12 +168,15 @@ void Klartext::execute(const Statement& s) {
       std::string name = at.letters();
       at.advance(name.size());
       at.more();
-      name += " " + at.letters();
+      const std::string first = at.letters();
+      name += " " + (first == "S" ? std::string("S-PULSE") : first);
       warn(s.begin, "no-effect", fmt::format("{} is read without effect", name), name);
       break;
     }
     case Kind::refused:
       refuse(s);
+      break;
+    default:
       break;
   }
 }
@@ -223,7 +207,7 @@ void Klartext::run_dwell(const Statement& s) {
 
 void Klartext::refuse(const Statement& s) {
   const Refusal refusal = refusal_of(std::string_view(file().source.text()).substr(s.begin, s.end - s.begin));
-  error(s.begin, refusal.check, refusal.message);
+  error(s.begin, refusal.check, refusal.message, refusal.alike);
 }
 
 // --- labels and calls
@@ -418,11 +402,23 @@ void Klartext::assign(const Statement& s) {
     const auto name = read_parameter(at);
     if (!name || !at.accept('='))
       throw FormulaError(begin, "expression", fmt::format("{}: Q5 = and a formula was expected", at.word()));
-    if (name->kind == 'S') {
+    if (name->kind == 'S')
       parameters_.set_text(name->number, read_text_formula(at, parameters_));
-    } else {
-      parameters_.set(*name, read_formula(at, parameters_));
-    }
+    else if (!set_or_say(*name, s, [&] { return read_formula(at, parameters_); }))
+      return;
+  }
+}
+
+/// Where the value has an error: says it, and what depends on it is not known. Returns whether there is a value.
+bool Klartext::set_or_say(const ParameterName& name, const Statement& s, const std::function<double()>& value) {
+  try {
+    parameters_.set(name, value());
+    return true;
+  } catch (const FormulaError& e) {
+    error(e.offset, e.check, e.what());
+    parameters_.set_unknown(
+        name, fmt::format("{} has an error in line {}", name.text(), file().source.location(s.begin).line));
+    return false;
   }
 }
 
@@ -453,11 +449,6 @@ void Klartext::run_function(const Statement& s) {
   at.accept(':');
   const auto other = [&](const char* what) { error(s.begin, "not-supported", what, what); };
   switch (*number) {
-    case 9:
-    case 10:
-    case 11:
-    case 12:
-      break;
     case 14:
     case 15:
     case 16:
@@ -492,8 +483,12 @@ void Klartext::run_function(const Statement& s) {
     case 27:
     case 28:
       return other("FN 26, FN 27 and FN 28 (tables) are not supported; values in Q parameters were expected");
+    case 23:
+    case 24:
+      return other(
+          "FN 23 and FN 24 (circles through points) are not supported; the centre was expected in Q parameters");
     default:
-      if (*number > 8 && *number != 13)
+      if (*number > 13)
         return error(s.begin, "function", fmt::format("FN {} is not known; FN 0 to FN 20 were expected", *number));
       break;
   }
@@ -505,6 +500,8 @@ void Klartext::run_function(const Statement& s) {
     }
     const bool texts = is_text(at);
     const std::string first_text = texts ? read_text_formula(at, parameters_) : std::string();
+    if (first_text.find('\0') != std::string::npos)
+      throw FormulaError(s.begin, "unknown-parameter", "this depends on a text that is read from the control");
     const std::size_t begin = at.offset();
     const double a = texts ? 0 : known(read_formula(at, parameters_), begin);
     std::string relation = at.letters();
@@ -534,46 +531,25 @@ void Klartext::run_function(const Statement& s) {
   if (!name || !at.accept('='))
     throw FormulaError(begin, "function", fmt::format("FN {} without its parameter; Q1 = was expected", *number));
   const auto operand = [&] { return read_value(at, parameters_); };
-  double value = 0;
-  switch (*number) {
-    case 0:
-      value = read_formula(at, parameters_);
-      break;
-    case 1:
-    case 2:
-    case 3:
-    case 4: {
-      const double a = operand();
-      const std::size_t sign = at.offset();
-      if (*number == 4)
-        at.accept("DIV") || at.accept('/');
-      else
-        at.accept("+-*"[*number - 1]);
-      const double b = operand();
-      if (*number == 4 && b == 0) throw FormulaError(sign, "expression", "a division by zero");
-      value = *number == 1 ? a + b : *number == 2 ? a - b : *number == 3 ? a * b : a / b;
-      break;
-    }
-    case 5:
-    case 6:
-    case 7:
-      value = read_formula(at, parameters_);  // SQRT, SIN or COS stands there
-      break;
-    case 8: {
-      const double a = operand();
-      at.accept("LEN");
-      value = std::hypot(a, operand());
-      break;
-    }
-    default: {  // 13
-      const double a = operand();
+  set_or_say(*name, s, [&]() -> double {
+    // FN 5 to 7: SQRT, SIN or COS stands there.
+    if (*number == 0 || (*number >= 5 && *number <= 7)) return read_formula(at, parameters_);
+    const double a = operand();
+    const std::size_t sign = at.offset();
+    if (*number == 8) return at.accept("LEN"), std::hypot(a, operand());
+    if (*number == 13) {
       at.accept("ANG");
-      value = deg_from_rad(std::atan2(a, operand()));
-      if (value < 0) value += 360;
-      break;
+      const double angle = deg_from_rad(std::atan2(a, operand()));
+      return angle < 0 ? angle + 360 : angle;
     }
-  }
-  parameters_.set(*name, value);
+    if (*number == 4)
+      at.accept("DIV") || at.accept('/');
+    else
+      at.accept("+-*"[*number - 1]);
+    const double b = operand();
+    if (*number == 4 && b == 0) throw FormulaError(sign, "expression", "a division by zero");
+    return *number == 1 ? a + b : *number == 2 ? a - b : *number == 3 ? a * b : a / b;
+  });
 }
 
 // --- the blank

@@ -97,6 +97,7 @@ class Klartext {
     double length_mm = 0, radius_mm = 0, angle_rad = 0;
     Vec3 from_mm = Vec3::Zero(), start_mm = Vec3::Zero();  ///< programmed: where the tool stands, PA
     double side = 1;                                       ///< 1: on the left of the contour
+    bool has_side = true;                                  ///< RL or RR says it
     double feed_mm_per_s = 0;
     bool rapid = false;
     double feed_there_mm_per_s = 0;  ///< to the auxiliary point PH
@@ -124,6 +125,7 @@ class Klartext {
   void open_program(const std::string& path, std::size_t offset);
   void end_program();
   void assign(const Statement& s);
+  bool set_or_say(const ParameterName& name, const Statement& s, const std::function<double()>& value);
   void run_function(const Statement& s);
   std::optional<bool> definition_asked(Cursor& at) const;
   void jump_behind_goto(Cursor& at, const Statement& s);
@@ -166,8 +168,8 @@ class Klartext {
   void run_path(const Statement& s);
   void run_line(const BlockValues& b);
   void go_in_machine_frame(const BlockValues& b);
-  void retract(const BlockValues::Function& f);
-  void run_polar_line(const BlockValues& b);
+  void run_untilted(const BlockValues& b);
+  void retract(const BlockValues::Function& f, const BlockValues& b);
   void run_circle(const BlockValues& b);
   void run_radius_arc(const BlockValues& b);
   void run_tangent_arc(const BlockValues& b, const Vec3& end);
@@ -213,10 +215,11 @@ class Klartext {
   void set_working_plane(Cursor at, int part);
   void run_transform(const Statement& s);
   void run_plane(const Statement& s);
-  void tilt(const Eigen::Matrix3d& rotation, bool turns, std::size_t offset);
-  void reset_tilt(bool turns);
+  enum class Turn : std::uint8_t { stay, turn, move };  ///< of PLANE; move: the tip keeps its place on the part
+  void tilt(const Eigen::Matrix3d& rotation, Turn turn, std::size_t offset);
+  void reset_tilt(Turn turn);
   void run_tcpm(const Statement& s);
-  void set_tip_control(bool on, std::size_t offset);
+  void set_tip_control(bool on);
   static bool begins_number(Cursor& at);
   Transform& transform() { return tilt_ ? in_plane_ : base_; }
 
@@ -251,8 +254,6 @@ class Klartext {
   void drill_hole(const Hole& hole);
   void bore_back();
   void cycle_circle(const Vec3& centre, double sweep_rad, double end_height_mm, double feed_mm_per_s);
-  static bool read_parameter_here(Cursor at);
-  static bool begins_number_behind(Cursor at);
   void cycle_move(MoveKind kind, const Vec3& programmed_end, double feed_mm_per_s, double dwell_s = 0);
   double q(int number);
   std::optional<double> q_if_set(int number);

@@ -55,6 +55,12 @@ void Parameters::set_unknown(const ParameterName& name, std::string why) {
   unknown_[name] = std::move(why);
 }
 
+double Parameters::of_control(Cursor& at, const std::string& name) {
+  while (at.more() && !at.accept(')')) at.advance();
+  why_ = name + " is read from the control";
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 const std::string& Parameters::text(int number) const {
   static const std::string kEmpty;
   const auto found = texts_.find(number);
@@ -71,6 +77,7 @@ std::optional<ParameterName> read_parameter(Cursor& at) {
     name.kind = second;
     at.advance();
   }
+  while (at.behind(0) == ' ') at.advance();
   if (!is_digit(at.behind(0))) return at.go_to(begin), std::nullopt;
   const auto number = at.integer();
   if (!number) return at.go_to(begin), std::nullopt;
@@ -227,7 +234,8 @@ class Formula {
     if (name == "STRLEN") return strlen(begin);
     if (name == "STRCOMP") return strcomp(begin);
     if (name == "INSTR") return instr(begin);
-    const double x = signed_argument(begin, name);
+    if (name == "CFGREAD" || name == "SYSSTR") return parameters_.of_control(at_, name);
+    const double x = signed_power();
     if (name == "SQ") return x * x;
     if (name == "SQRT") {
       if (x < 0) throw FormulaError(begin, "expression", "the square root of a negative number");
@@ -258,8 +266,6 @@ class Formula {
                     "EXP, NEG, ABS, INT, FRAC or SGN was expected",
                     name));
   }
-
-  double signed_argument(std::size_t, const std::string&) { return signed_power(); }
 
   /// Multiples of 90 degrees exactly.
   static double sin_deg(double degrees) {
@@ -328,6 +334,9 @@ std::string read_text_formula(Cursor& at, Parameters& parameters) {
       out += name->kind == 'S' ? parameters.text(name->number) : fmt::format("{}", parameters.value(*name, begin));
     } else if (at.accept("SUBSTR")) {
       out += part_of_text(at, parameters, begin);
+    } else if (at.accept("SYSSTR") || at.accept("CFGREAD")) {
+      parameters.of_control(at, "the text");
+      out += '\0';
     } else if (at.accept("TOCHAR")) {
       at.accept('(');
       if (!at.accept_prefix("DAT")) throw FormulaError(begin, "expression", "TOCHAR without DAT; DAT+Q1 was expected");

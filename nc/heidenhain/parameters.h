@@ -37,6 +37,8 @@ class Parameters {
   void set(const ParameterName& name, double value);
   /// Marks a value that only the machine knows: `why` is said where a move depends on it.
   void set_unknown(const ParameterName& name, std::string why);
+  /// NaN for a function that asks the control; its brackets are passed over.
+  double of_control(Cursor& at, const std::string& name);
   bool is_defined(const ParameterName& name) const;
   const std::string& text(int number) const;
   void set_text(int number, std::string value) { texts_[number] = std::move(value); }

@@ -54,12 +54,14 @@ void Klartext::run_path(const Statement& s) {
   }
   if (b.compensation) set_compensation(*b.compensation, s.begin);
   for (const auto& f : b.functions)
-    if (f.code == 140) retract(f);
+    if (f.code == 140) retract(f, b);
   switch (s.kind) {
     case Kind::line:
     case Kind::normal_line:
       if (b.has(91) || b.has(92))
         go_in_machine_frame(b);
+      else if (b.has(130) && tilted())
+        run_untilted(b);
       else
         run_line(b);
       break;
@@ -104,7 +106,7 @@ void Klartext::run_functions(const Statement& s) {
   set_feed(b);
   functions_before(b);
   for (const auto& f : b.functions)
-    if (f.code == 140) retract(f);
+    if (f.code == 140) retract(f, b);
   if (b.has(99)) {
     call_cycle(s.begin);
     cycle_modal_ = false;
@@ -330,8 +332,25 @@ void Klartext::go_in_machine_frame(const BlockValues& b) {
   if (b.turns()) add_rotary(b, out_.moves.size() - 1);
 }
 
-/// M140 MB: off along the tool axis by so much, or to the end of the travel (MAX).
-void Klartext::retract(const BlockValues::Function& f) {
+/// M130: coordinates of the untilted system, for this block.
+void Klartext::run_untilted(const BlockValues& b) {
+  if (options_.rotary_axes.empty()) return go_in_machine_frame(b);
+  const auto tilt = std::exchange(tilt_, std::nullopt);
+  const Transform in_plane = std::exchange(in_plane_, {});
+  const WorkFrame work_frame = std::exchange(state_.work_frame, WorkFrame::machine);
+  state_changed_ = true;
+  update_frame();
+  run_line(b);
+  tilt_ = tilt;
+  in_plane_ = in_plane;
+  state_.work_frame = work_frame;
+  state_changed_ = start_open_ = true;
+  open_axes_ = 7;
+  update_frame();
+}
+
+/// M140 MB: off along the tool axis by so much, or to the end of the travel (MAX); at the F of its block, else rapid.
+void Klartext::retract(const BlockValues::Function& f, const BlockValues& b) {
   if (!f.argument) {
     error(f.offset, "retract", "M140 without MB; MB MAX or MB with a length was expected");
     return;
@@ -349,9 +368,18 @@ void Klartext::retract(const BlockValues::Function& f) {
   } else {
     Vec3 up = Vec3::Zero();
     up[tool_axis_] = *f.argument * unit_mm();
-    end = position_mm_ + frame_.linear * up;
+    up = frame_.linear * up;
+    if (state_.tip_control != TipControl::off && (direction_unknown_ || rotary_rad_ != Vec3::Zero())) {
+      // Along the tool, where a vector gives it; by angles only the machine knows where that is.
+      const bool by_vector = direction_unknown_ && out_.rotary.back().is_direction;
+      up = by_vector ? Vec3(up.norm() * out_.rotary.back().end) : Vec3(Vec3::Zero());
+      if (!by_vector) open_axes_ = 7;
+    }
+    end = position_mm_ + up;
   }
-  Move& move = add_move(MoveKind::rapid, end);
+  const double feed = b.feed && !b.rapid ? cutting_feed("M140") : 0;
+  Move& move = add_move(feed > 0 ? MoveKind::linear : MoveKind::rapid, end);
+  move.feed_mm_per_s = feed;
   move.editable = false;
 }
 
@@ -586,6 +614,11 @@ void Klartext::run_polar_circle(const BlockValues& b) {
     return;
   }
   const int sense = b.sense || !b.polar_angle_step ? sense_of(b) : (*b.polar_angle < 0 ? -1 : 1);
+  if (b.polar_angle_step && sense * *b.polar_angle < 0 && std::fmod(*b.polar_angle, 360.0) != 0)
+    warn(statement_->begin, "arc-sense",
+         "IPA and DR have different signs; the arc is read with the size of IPA in the sense of DR; the same sign was "
+         "expected",
+         "IPA");
   double sweep = 0;
   editable_ = false;
   relied_ends_.add(out_.moves);  // it gives the radius
@@ -610,7 +643,7 @@ void Klartext::run_polar_circle(const BlockValues& b) {
     sweep = sense * kFullTurn_rad;
     for (const int axis : {axes.first, axes.second}) end[axis] = start[axis];
   }
-  if (sweep == 0) return;
+  if (sweep == 0) return line_to(end, given_axes(b), b);
   if (std::abs(sweep) > kFullTurn_rad * 1e5) {
     error(statement_->begin, "arc-turns", "more than 100000 turns in one block");
     return;

@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "nc/heidenhain/cursor.h"
 #include "nc/heidenhain/heidenhain_language.h"
+#include "nc/heidenhain/parameters.h"
 #include "nc/reporter.h"
 
 namespace camber::nc::heidenhain {
@@ -32,7 +34,7 @@ constexpr std::array kKeywords{
     Keyword{"LBL", Kind::label},       Keyword{"FN", Kind::function},
     Keyword{"PLANE", Kind::plane},     Keyword{"TRANS", Kind::transform},
     Keyword{"PATTERN", Kind::pattern}, Keyword{"STOP", Kind::stop},
-    Keyword{"ERROR", Kind::passed},    Keyword{"DECLARE", Kind::passed},
+    Keyword{"ERROR", Kind::passed},
 };
 
 constexpr std::string_view kAxes = "XYZABCUVW";
@@ -145,6 +147,20 @@ class Reader {
     return statement.numbered && at < end_of(line) && (is_letter(text_[at]) || text_[at] == ';' || text_[at] == '*');
   }
 
+  /// A line that begins with a keyword: a ~ before it is one too many.
+  bool begins_statement(std::size_t line) const {
+    Statement statement;
+    Cursor at(text_, behind_number(line, statement), end_of(line));
+    if (!at.more()) return false;
+    const std::string word = at.letters();
+    constexpr std::array<std::string_view, 4> kPairs{"CYCL", "CYCLE", "TOOL", "CALL"};
+    if (word.size() > 1)
+      return std::ranges::find(kPairs, word) != kPairs.end() ||
+             (word != "ERROR" && std::ranges::find(kKeywords, word, &Keyword::word) != kKeywords.end());
+    return (word == "L" || word == "C") && is_blank(at.behind(1)) &&
+           !begins_value_behind_blanks(at.offset() + 1, at.end());
+  }
+
   /// Returns the line behind it.
   std::size_t read_statement(std::size_t line) {
     Statement s;
@@ -155,7 +171,7 @@ class Reader {
     const bool comment = at < end && (text_[at] == ';' || text_[at] == '*' || text_[at] == '(');
     std::size_t next = line + 1;
     for (std::size_t from = at; goes_on(from, end) && next < program_.blocks.size(); ++next) {
-      if (!comment && s.numbered && is_numbered(next)) break;
+      if (!comment && ((s.numbered && is_numbered(next)) || begins_statement(next))) break;
       from = begin_of(next);
       end = end_of(next);
     }
@@ -185,7 +201,7 @@ class Reader {
       s.kind = kind;
       s.at = static_cast<std::uint32_t>(at.offset() + length);
     };
-    if (first == 'Q' && is_parameter(at)) return take(Kind::assignment, 0);
+    if (Cursor ahead = at; read_parameter(ahead)) return take(Kind::assignment, 0);
     if (word.size() == 1 && is_axis(first) && first != 'C' && begins_value_behind_blanks(at.offset() + 1, s.end))
       return take(Kind::line, 0);
     if (word == "C" && begins_value(second)) return take(Kind::line, 0);
@@ -198,7 +214,8 @@ class Reader {
     // LX+5, CCX+1: no blank behind the keyword.
     for (const Keyword& k : kKeywords)
       if (has_words(k.kind) && word.starts_with(k.word) && word.size() <= k.word.size() + 2 &&
-          (is_axis(word[k.word.size()]) || word[k.word.size()] == 'I') && is_axis(word.back()))
+          (is_axis(word[k.word.size()]) || word[k.word.size()] == 'I') && is_axis(word.back()) &&
+          begins_value_behind_blanks(at.offset() + word.size(), s.end))
         return take(k.kind, k.word.size());
     s.kind = Kind::refused;
   }
@@ -221,29 +238,26 @@ class Reader {
       if (at.accept("LBL")) return take(Kind::call_label);
       if (at.accept("PGM")) return take(Kind::call_program);
       if (at.accept("SELECTED")) return take(Kind::select_program);
+    } else if (word == "DECLARE") {
+      if (at.accept("STRING")) return take(Kind::assignment);
     } else if (word == "SEL") {
       if (at.accept("PGM")) return take(Kind::select_program);
       if (at.accept("TABLE")) return take(Kind::passed);
       if (at.accept("CORR")) return take(Kind::noted);
     } else if (word == "FUNCTION") {
       if (at.accept("TCPM")) return take(Kind::tcpm);
-      const std::size_t reset = at.offset();
-      if (at.accept("RESET") && at.accept("TCPM")) {
-        at.go_to(reset);
+      const Cursor behind = at;
+      const bool reset = at.accept("RESET");
+      if (reset && at.accept("TCPM")) {
+        at = behind;
         return take(Kind::tcpm);
       }
-      at.go_to(reset);
-      if (at.accept("MODE")) return !at.accept("TURN") && take(Kind::passed);
-      if (at.accept("DWELL")) return take(Kind::dwell);
+      if (!reset && at.accept("MODE")) return !at.accept("TURN") && take(Kind::passed);
+      if (!reset && at.accept("DWELL")) return take(Kind::dwell);
       for (const char* other : {"FEED", "S", "PROG", "FILE", "COUNT", "LIFTOFF", "CORRDATA"})
         if (at.accept(other)) return take(Kind::noted);
     }
     return false;
-  }
-
-  static bool is_parameter(Cursor& at) {
-    const char second = at.behind(1);
-    return is_digit(second) || ((second == 'L' || second == 'R' || second == 'S') && is_digit(at.behind(2)));
   }
 
   bool begins_value_behind_blanks(std::size_t at, std::size_t end) const {
@@ -276,6 +290,7 @@ class Reader {
   }
 
   void read_begin(const Statement& s) {
+    if (std::exchange(begun_, true)) return;  // a second program of the file
     tree_.begin_statement = static_cast<std::uint32_t>(tree_.statements.size());
     const std::string_view line = text_.substr(s.at, end_of(s.block) - s.at);
     std::size_t last = line.find_last_not_of(" \t\r");
@@ -514,6 +529,7 @@ class Reader {
   Tree& tree_;
   Reporter& report_;
   std::string_view text_;
+  bool begun_ = false;  ///< BEGIN PGM was read
   Kind kind_ = Kind::nothing;
   std::size_t first_word_ = 0;
   double after_m_ = -1;  ///< the M function that words here may belong to; -1: none
@@ -544,6 +560,7 @@ constexpr std::array kRefused{
     Refused{"CONTOUR", "an SL contour", "the finished path of the contour was expected"},
     Refused{"SEL CONTOUR", "an SL contour", "the finished path of the contour was expected"},
     Refused{"SEL PATTERN", "a point table", "PATTERN DEF or L blocks with M99 were expected"},
+    Refused{"GLOBAL DEF", "values for cycles", "values in each CYCL DEF were expected"},
     Refused{"OPEN", "access to tables", "values in Q parameters were expected"},
 };
 
@@ -558,7 +575,8 @@ Refusal refusal_of(std::string_view statement) {
       words += ' ';
   for (const Refused& r : kRefused)
     if (words.starts_with(r.begins) && (words.size() == r.begins.size() || !is_letter(words[r.begins.size()])))
-      return {fmt::format("{} ({}) is not supported; {}", r.begins, r.what, r.instead), "not-supported"};
+      return {fmt::format("{} ({}) is not supported; {}", r.begins, r.what, r.instead), "not-supported",
+              std::string(r.what)};
   const std::string first = words.substr(0, std::min<std::size_t>(words.find_first_of(" ;"), 40));
   if (first.empty()) return {"an empty statement", "not-a-word"};
   return {fmt::format("{} begins no Klartext block that is known; L, C, TOOL CALL, CYCL DEF ... were expected", first),

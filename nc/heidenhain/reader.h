@@ -15,6 +15,7 @@ Program read_text(SourceText source, Diagnostics& diagnostics);
 struct Refusal {
   std::string message;
   std::string check;
+  std::string alike{};  ///< what counts as the same
 };
 Refusal refusal_of(std::string_view statement);
 

@@ -119,7 +119,7 @@ class KlartextRules : public TextRules {
     std::size_t own = 0;
     while (own < all.size() && !number_of(all[own])) ++own;
     const long first = own < all.size() ? *number_of(all[own]) : 0;
-    long number = first - (own > 0 ? 0 : 0);
+    long number = first;
     std::string out;
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (const auto has = number_of(all[i]))

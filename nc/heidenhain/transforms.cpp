@@ -1,5 +1,6 @@
 // Frames: datum shift, mirror image, rotation, scale; tilted planes; tool-centre-point control.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -239,9 +240,9 @@ void Klartext::set_working_plane(Cursor at, int part) {
     }
   }
   if (!any || angles == Vec3::Zero())
-    reset_tilt(false);
+    reset_tilt(Turn::stay);
   else
-    tilt(spatial(angles), false, statement_->begin);
+    tilt(spatial(angles), Turn::stay, statement_->begin);
 }
 
 /// Notes the plane of a feed move.
@@ -275,8 +276,10 @@ void Klartext::place_stock() {
   out_.stock->max_mm = a.cwiseMax(b);
 }
 
-void Klartext::tilt(const Matrix& rotation, bool turns, std::size_t offset) {
+void Klartext::tilt(const Matrix& rotation, Turn turn, std::size_t offset) {
   end_compensation();
+  const std::uint8_t open_before = open_axes_;
+  const bool start_open_before = start_open_;
   if (options_.rotary_axes.empty() && !(tilt_ && *tilt_ == rotation)) carried_over_ = 7;
   tilt_ = rotation;
   in_plane_ = {};
@@ -291,23 +294,27 @@ void Klartext::tilt(const Matrix& rotation, bool turns, std::size_t offset) {
     state_.work_frame = WorkFrame::machine;
     return;
   }
-  if (state_.tip_control != TipControl::off) set_tip_control(false, offset);
+  if (state_.tip_control != TipControl::off) set_tip_control(false);
   state_.work_frame = WorkFrame::tilted;
   state_changed_ = true;
   if (!out_.moves.empty() && (direction_unknown_ || rotary_rad_ != Vec3::Zero())) {
     open_axes_ = 7;
     start_open_ = true;
   }
-  if (!turns) return;
+  if (turn == Turn::stay) return;
+  const bool keeps_tip = turn == Turn::move;
+  if (keeps_tip) set_tip_control(true);
+  open_axes_ = keeps_tip ? open_before : 7;
+  start_open_ = !keeps_tip || start_open_before;
   Move& move = add_move(MoveKind::rapid, position_mm_);
   move.editable = false;
-  move.open_axes = 7;
   direction_target(rotation.col(2), out_.moves.size() - 1);
-  open_axes_ = 7;
-  start_open_ = true;
+  set_tip_control(false);
+  open_axes_ = keeps_tip ? open_before : 7;
+  start_open_ = open_axes_ != 0;
 }
 
-void Klartext::reset_tilt(bool turns) {
+void Klartext::reset_tilt(Turn turn) {
   if (tilt_) {
     end_compensation();
     if (options_.rotary_axes.empty() && !tilt_->isIdentity(1e-12)) carried_over_ = 7;
@@ -324,7 +331,7 @@ void Klartext::reset_tilt(bool turns) {
       start_open_ = true;
     }
   }
-  if (!turns) return;
+  if (turn == Turn::stay) return;
   BlockValues b;
   b.rapid = true;
   for (const RotaryOption& axis : options_.rotary_axes) b.rotary[static_cast<std::size_t>(axis.letter - 'A')] = 0.0;
@@ -337,15 +344,16 @@ void Klartext::run_plane(const Statement& s) {
   const std::string form = at.letters();
   at.advance(form.size());
   std::map<std::string, double> values;
-  bool turns = false;
+  Turn turns = Turn::stay;
   while (at.more()) {
     const std::size_t begin = at.offset();
     std::string word = at.letters();
     if (word.empty()) throw FormulaError(begin, "plane", fmt::format("{} in PLANE is not understood", at.word()));
     if (word == "STAY" || word == "ABST" || word == "DIST" || word == "COORD" || word == "TABLE" || word == "ROT" ||
         word == "SYM" || word == "SEQ" || word == "FMAX" || word == "FAUTO" || word == "MB" || word == "MAX" ||
-        word == "F" || word == "M") {
+        word == "F" || word == "M" || word == "SET") {
       at.advance(word.size());
+      if (word == "SET") at.accept('-') || at.accept('_'), at.accept_prefix("UP");
       if (word == "SEQ" || word == "SYM") at.advance();
       if ((word == "ROT" && form == "PROJECTED") && begins_number(at)) {
         values["ROT"] = known(read_value(at, parameters_), begin);
@@ -355,10 +363,15 @@ void Klartext::run_plane(const Statement& s) {
       continue;
     }
     if (word == "TURN" || word == "MOVE") {
-      turns = true;
+      turns = word == "MOVE" ? Turn::move : Turn::turn;
       at.advance(word.size());
       continue;
     }
+    constexpr std::array<std::string_view, 18> kValues{"SPA",   "SPB",    "SPC", "EULPR", "EULNU", "EULROT",
+                                                       "PROPR", "PROMIN", "BX",  "BY",    "BZ",    "NX",
+                                                       "NY",    "NZ",     "A",   "B",     "C",     "P"};
+    if (std::ranges::find(kValues, word) == kValues.end())
+      throw FormulaError(begin, "plane", fmt::format("{} in PLANE {} is not understood", at.word(), form));
     at.advance(word.size());
     if (word == "P" && is_digit(at.peek())) {  // P1X of POINTS
       word += static_cast<char>(at.peek());
@@ -404,9 +417,7 @@ void Klartext::run_plane(const Statement& s) {
     return tilt(m, turns, s.begin);
   }
   if (form == "POINTS") {
-    const Vec3 p1 = vector("PX", "PY", "PZ"), a = vector("P1X", "P1Y", "P1Z"), b = vector("P2X", "P2Y", "P2Z"),
-               c = vector("P3X", "P3Y", "P3Z");
-    (void)p1;
+    const Vec3 a = vector("P1X", "P1Y", "P1Z"), b = vector("P2X", "P2Y", "P2Z"), c = vector("P3X", "P3Y", "P3Z");
     const Vec3 x = b - a, normal = x.cross(c - a);
     if (normal.norm() < 1e-9)
       throw FormulaError(s.begin, "plane",
@@ -414,7 +425,6 @@ void Klartext::run_plane(const Statement& s) {
     Matrix m;
     m.col(0) = x.normalized();
     m.col(2) = normal.normalized();
-    if (m(2, 2) < 0) m.col(2) = -m.col(2);
     m.col(1) = Vec3(m.col(2)).cross(Vec3(m.col(0)));
     return tilt(m, turns, s.begin);
   }
@@ -446,10 +456,10 @@ bool Klartext::begins_number(Cursor& at) {
 void Klartext::run_tcpm(const Statement& s) {
   Cursor at = cursor(s);
   const bool off = at.letters() == "RESET";
-  set_tip_control(!off, s.begin);
+  set_tip_control(!off);
 }
 
-void Klartext::set_tip_control(bool on, std::size_t offset) {
+void Klartext::set_tip_control(bool on) {
   if (options_.rotary_axes.empty()) return;
   const TipControl control = on ? TipControl::angles : TipControl::off;
   if (control == state_.tip_control) return;
@@ -458,7 +468,6 @@ void Klartext::set_tip_control(bool on, std::size_t offset) {
     state_.work_frame = WorkFrame::machine;
   }
   if (on) update_tool_length();
-  (void)offset;
   state_.tip_control = control;
   if (!on && tilt_) state_.work_frame = WorkFrame::tilted;
   state_changed_ = true;

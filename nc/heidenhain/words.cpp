@@ -39,30 +39,9 @@ std::string name_of(char letter) {
 }
 
 std::string_view keyword_of(Kind kind) {
-  switch (kind) {
-    case Kind::normal_line:
-      return "LN";
-    case Kind::polar_line:
-      return "LP";
-    case Kind::circle:
-      return "C";
-    case Kind::radius_arc:
-      return "CR";
-    case Kind::tangent_arc:
-      return "CT";
-    case Kind::polar_circle:
-      return "CP";
-    case Kind::polar_tangent_arc:
-      return "CTP";
-    case Kind::centre:
-      return "CC";
-    case Kind::rounding:
-      return "RND";
-    case Kind::chamfer:
-      return "CHF";
-    default:
-      return "L";
-  }
+  constexpr std::array<std::string_view, 11> kNames{"L", "LN", "LP", "C", "CR", "CT", "CP", "CTP", "CC", "RND", "CHF"};
+  const auto i = static_cast<std::size_t>(kind) - static_cast<std::size_t>(Kind::line);
+  return i < kNames.size() ? kNames[i] : "L";
 }
 
 /// Whether blocks of this kind use the word. Others the control does not accept.
@@ -322,8 +301,9 @@ namespace {
 
 constexpr std::array kAtEnd{0, 1, 2, 5, 6, 9, 30};
 /// Read, without effect on the moves; M functions of the control itself. Others are the machine maker's own.
-constexpr std::array kPassed{7,   10,  11,  90,  93,  96,  97,  98,  101, 102, 104, 107, 108, 109, 110, 111, 112, 114,
-                             115, 117, 118, 120, 121, 124, 132, 133, 134, 135, 138, 141, 142, 143, 144, 145, 148, 149};
+constexpr std::array kPassed{10,  11,  90,  93,  94,  96,  97,  98,  101, 102, 104, 107, 108,
+                             109, 110, 111, 112, 114, 115, 116, 117, 118, 120, 121, 124, 132,
+                             133, 134, 135, 138, 141, 142, 143, 144, 145, 148, 149};
 
 bool acts_at_end(int code) { return std::ranges::find(kAtEnd, code) != kAtEnd.end(); }
 
@@ -364,10 +344,8 @@ void Klartext::run_m(const BlockValues::Function& f) {
     case 5:
       spindle(SpindleDirection::stopped, EventKind::spindle_stop);
       break;
-    case 8:
-      coolant(true);
-      break;
     case 7:
+    case 8:
       coolant(true);
       break;
     case 9:
@@ -384,9 +362,11 @@ void Klartext::run_m(const BlockValues::Function& f) {
       break;
     case 91:
     case 92:
-    case 130:
-    case 140:
     case 99:
+    case 130:
+    case 136:
+    case 137:
+    case 140:
       break;  // run_path reads them
     case 89:
       cycle_modal_ = true;
@@ -403,28 +383,22 @@ void Klartext::run_m(const BlockValues::Function& f) {
       else
         plunge_factor_.reset();
       break;
-    case 116:
-    case 117:
-    case 94:
-      add_event(EventKind::m_code, f.code);
-      break;
     case 126:
-      shortest_way_ = true;
-      add_event(EventKind::m_code, f.code);
-      break;
     case 127:
-      shortest_way_ = false;
+      shortest_way_ = f.code == 126;
       add_event(EventKind::m_code, f.code);
       break;
     case 128:
-      set_tip_control(true, f.offset);
-      break;
     case 129:
-      set_tip_control(false, f.offset);
+      set_tip_control(f.code == 128);
       break;
-    case 136:
-    case 137:
-      break;  // set_feed_mode reads them
+    case 97:
+    case 98:
+      if (radius_.active && radius_.radius_mm != 0)
+        warn(f.offset, "no-effect",
+             fmt::format("M{} is read without effect on the path that RL or RR makes here", f.code), "M97");
+      add_event(EventKind::m_code, f.code);
+      break;
     default:
       add_event(EventKind::m_code, f.code);
       if (f.code <= 1 || f.code == 6 || std::ranges::find(kPassed, f.code) != kPassed.end()) break;
@@ -518,13 +492,19 @@ void Klartext::call_tool(const Statement& s) {
       read_value(at, parameters_);
     } else if (c == 'S') {
       at.advance();
-      if (at.accept('(')) {
-        warn(offset, "no-effect", "a cutting speed in TOOL CALL is read without effect; S with the speed was expected");
-        while (at.more() && at.peek() != ')') at.advance();
-        at.accept(')');
+      const bool bracket = at.accept('('), cutting_speed = at.accept("VC");
+      if (cutting_speed) at.accept(':') || at.accept('=');
+      double speed = known(read_value(at, parameters_), offset);
+      if (bracket) at.accept(')');
+      const auto radius = cutter_radius_mm();
+      if (cutting_speed && (!radius || *radius <= 0)) {
+        warn(offset, "no-effect",
+             "a cutting speed in TOOL CALL needs the radius of the tool, which nothing gives; S with the speed was "
+             "expected");
         continue;
       }
-      set_spindle_speed(known(read_value(at, parameters_), offset), offset);
+      if (cutting_speed) speed *= (inch_ ? 12 * 25.4 : 1000) / (2 * kPi * *radius);  // m, or feet, a minute
+      set_spindle_speed(speed, offset);
     } else if (c == 'F') {
       at.advance();
       if (at.accept("AUTO") || at.accept("MAX")) continue;

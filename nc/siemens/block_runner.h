@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "nc/arcs.h"
 #include "nc/canned_cycles.h"
@@ -75,6 +76,8 @@ class BlockRunner : public SystemValues {
   void set_offset_normal(double value) { offset_normal_mm_ = value * unit_mm(); }
   void set_contour_tolerance(double tolerance);
   void set_modal_rounding(double value) { modal_rounding_mm_ = value * unit_mm(); }
+  void set_block_feed(double value) { request_.block_feed = value; }
+  void set_corner_feed(double value, bool modal) { (modal ? modal_corner_feed_ : request_.corner_feed) = value; }
   void orient_spindle() { add_event(EventKind::spindle_orient, 0); }
   void set_frame_variable(const std::string& name, const std::vector<double>& indexes,
                           const std::vector<std::string>& index_names, const Value& value, std::uint32_t offset);
@@ -111,7 +114,8 @@ class BlockRunner : public SystemValues {
     const WordRow* frame = nullptr;
     std::uint32_t frame_offset = 0;
     bool feed_mode_given = false;
-    bool limits = false;  // G25, G26: words are limits
+    bool limits = false;                                // G25, G26: words are limits
+    std::optional<double> block_feed{}, corner_feed{};  // FB; FRC, FRCM
   };
   struct Radius {
     bool active = false;
@@ -125,6 +129,7 @@ class BlockRunner : public SystemValues {
     double size_mm = 0;
     std::size_t move = 0, offset = 0;
     std::string text;
+    std::optional<double> feed_mm_per_s{};
   };
 
   // modal_words.cpp
@@ -133,6 +138,7 @@ class BlockRunner : public SystemValues {
   void set_work_offset(int g);
   void set_feed_mode(FeedMode mode);
   void read_feed();
+  double internal_feed(double value) const;
   void read_spindle_speed();
   void read_tool();
   void change_tool(std::uint32_t offset);
@@ -249,6 +255,8 @@ class BlockRunner : public SystemValues {
   bool cycle832_ = false, compressor_ = false;
   double cycle832_tolerance_mm_ = -1, contour_tolerance_mm_ = -1;  ///< negative: not given
   int blending_ = 60;                                              ///< 60, 64, 641 ...
+  /// Path control before CYCLE832, which rounds corners (G645); none where a word of its own has followed.
+  std::optional<std::pair<PathControl, std::uint8_t>> before_cycle832_;
   double adis_mm_ = 0;
 
   WorkOffsets offsets_;
@@ -260,6 +268,7 @@ class BlockRunner : public SystemValues {
   std::map<int, ToolOffset> tool_offsets_;
   double offset_normal_mm_ = 0;
   double modal_rounding_mm_ = 0;
+  std::optional<double> modal_corner_feed_;  ///< FRCM
   Radius radius_;
   bool not_editable_told_ = false;
   bool leaving_ = false;

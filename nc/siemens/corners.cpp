@@ -38,8 +38,6 @@ void BlockRunner::read_corner(std::size_t moves_before) {
       continue;
     }
     corner_ = {true, kind.chamfer, false, slot.value * unit_mm(), out_.moves.size() - 1, slot.offset, text};
-    // CHF: the length of the chamfer; known when the angle is: see put_corner
-    if (kind.extra == Extra::chf) corner_.text = text;
   }
   if (modal_rounding_mm_ > 0 && cut && !corner_.waits)
     corner_ = {true,
@@ -49,6 +47,10 @@ void BlockRunner::read_corner(std::size_t moves_before) {
                out_.moves.size() - 1,
                words_.offset(),
                fmt::format("RNDM={:g}", modal_rounding_mm_ / unit_mm())};
+  const auto feed = request_.corner_feed ? request_.corner_feed : modal_corner_feed_;
+  if (!corner_.waits || !feed || *feed <= 0) return;
+  const bool per_turn = state_.feed_mode == FeedMode::per_revolution;
+  corner_.feed_mm_per_s = internal_feed(*feed) * (per_turn ? state_.spindle_speed_rpm / 60 : 1);
 }
 
 void BlockRunner::finish_corner(std::size_t moves_before) {
@@ -90,10 +92,15 @@ void BlockRunner::put_corner(const Corner& corner, std::size_t before, std::size
     const double half = 0.5 * (kPi - std::acos(std::clamp(in.dot(out), -1.0, 1.0)));
     if (std::sin(half) > 1e-9) size_mm = size_mm / (2 * std::sin(half));
   }
-  const CornerCutResult cut = cut_corner(
-      out_, {before, after, plane_, fmt::format("G{}", state_.plane_g), corner.chamfer, size_mm, corner.text});
+  CornerCutResult cut = cut_corner(
+      out_, {before, after, plane_, fmt::format("G{}", state_.plane_g), corner.chamfer, size_mm, corner.text, true});
   if (!cut.error.empty()) return fail(cut.error);
+  if (cut.shrunk)
+    report_.warning(corner.offset, "corner-word",
+                    fmt::format("{} is made smaller, since a block beside it is too short", corner.text), "smaller");
   if (!cut.between) return;
+  // Without FRC the feed of the block that leads away.
+  cut.between->feed_mm_per_s = corner.feed_mm_per_s.value_or(b.feed_mm_per_s);
   out_.moves.insert(out_.moves.begin() + static_cast<std::ptrdiff_t>(after), *cut.between);
   for (auto e = out_.events.rbegin(); e != out_.events.rend() && e->before_move >= after; ++e) ++e->before_move;
   if (radius_.active && radius_.first_move >= after) ++radius_.first_move;

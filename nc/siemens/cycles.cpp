@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -95,6 +96,12 @@ void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
       cycle832_ = kind != 0;
       cycle832_tolerance_mm_ = cycle832_ && call.number(0) > 0 ? call.number(0) * unit_mm() : -1;
       contour_tolerance_mm_ = -1;
+      if (cycle832_ && !before_cycle832_) before_cycle832_.emplace(state_.path_control, state_.path_g);
+      if (before_cycle832_) std::tie(state_.path_control, state_.path_g) = *before_cycle832_;
+      if (cycle832_)
+        state_.path_control = PathControl::blend, state_.path_g = 64;
+      else
+        before_cycle832_.reset();
       constexpr std::array<std::string_view, 5> kKinds{"", "CYCLE832_FINISH", "CYCLE832_SEMIFIN", "CYCLE832_ROUGH",
                                                        "CYCLE832_FINISH"};
       state_.mode_words &= ~mode_words_of_group(0);

@@ -308,6 +308,9 @@ void LineParser::parse_letter() {
   std::size_t behind = digits;
   while (behind < end_ && is_blank(text_[behind])) ++behind;
   const bool sets = behind < end_ && text_[behind] == '=' && !(behind + 1 < end_ && text_[behind + 1] == '=');
+  if (behind < end_ && text_[behind] == ':' && digits > at_ && out_.items.empty())
+    fail(begin, "label",
+         fmt::format("{} is no label; a name that begins with two letters was expected", quoted(begin)));
   if (letter == 'L' && digits > at_ && !sets) {
     item.name = names_.index("L" + std::string(text_.substr(at_, digits - at_)));
     item.kind = ItemKind::call;

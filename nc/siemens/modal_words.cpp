@@ -1,5 +1,6 @@
 // Words that change the state of the control.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 
@@ -137,7 +138,9 @@ void BlockRunner::set_contouring() {
   state_.high_speed_contouring = on;
   state_.contouring = on ? Contouring::cycle832 : Contouring::none;
   const double tolerance_mm = contour_tolerance_mm_ > 0 ? contour_tolerance_mm_ : cycle832_tolerance_mm_;
-  state_.blend_tolerance_mm = blending_ == 641 ? adis_mm_ : on && blending_ != 60 ? tolerance_mm : -1;
+  state_.blend_tolerance_mm = blending_ == 641                              ? adis_mm_
+                              : on && (blending_ != 60 || before_cycle832_) ? tolerance_mm
+                                                                            : -1;
   change_state();
 }
 
@@ -150,6 +153,8 @@ bool BlockRunner::execute(bool& ends_subprogram) {
   ends_subprogram = false;
   moved_ = false;
   if (words_.empty() && !request_.frame && !request_.machine_frame && !request_.motion_given) return true;
+  const bool changes_tool = std::ranges::find(words_.m, 6, &CodeWord::number) != words_.m.end();
+  if (!changes_tool) read_edge();
   read_g_codes();
   if (words_.has(Extra::adis)) {
     adis_mm_ = std::max(0.0, words_.of(Extra::adis).value * unit_mm());
@@ -161,11 +166,13 @@ bool BlockRunner::execute(bool& ends_subprogram) {
   }
   read_tool();
   if (!read_m_codes_before()) return false;
-  read_edge();
+  if (changes_tool) read_edge();
   check_letters();
   note_dimensions();
   read_rotary_words();
   const std::size_t moves_before = out_.moves.size();
+  const std::optional<double> modal_feed = feed_;
+  if (request_.block_feed) feed_ = internal_feed(*request_.block_feed);
   if (request_.frame) {
     run_frame_command();
   } else if (request_.limits) {
@@ -180,6 +187,7 @@ bool BlockRunner::execute(bool& ends_subprogram) {
   } else {
     move();
   }
+  if (request_.block_feed) feed_ = modal_feed;
   finish_corner(moves_before);
   read_corner(moves_before);
   for (std::size_t i = moves_before; i < out_.moves.size(); ++i) moved_ |= out_.moves[i].kind != MoveKind::dwell;
@@ -188,7 +196,28 @@ bool BlockRunner::execute(bool& ends_subprogram) {
 
 // --- G codes
 
+namespace {
+
+/// Groups of which a block has one function at most; 0: others.
+int modal_group(int g) {
+  if ((g >= 0 && g <= 3) || g == 331 || g == 332) return 1;
+  if (g >= 17 && g <= 19) return 6;
+  if (g >= 40 && g <= 42) return 7;
+  if ((g >= 54 && g <= 57) || g == 500 || (g >= 505 && g <= 599)) return 8;
+  if (g == 70 || g == 71 || g == 700 || g == 710) return 13;
+  return g == 90 || g == 91 ? 14 : 0;
+}
+
+}  // namespace
+
 void BlockRunner::read_g_codes() {
+  for (std::size_t i = 1; i < words_.g.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const int g = words_.g[i].number, other = words_.g[k].number;
+      if (g != other && modal_group(g) != 0 && modal_group(g) == modal_group(other))
+        error(words_.g[i].offset, "modal-group",
+              fmt::format("G{} and G{} in one block; one of them was expected", other, g));
+    }
   // Those that others depend on first: units and dimensions.
   for (const CodeWord& code : words_.g) {
     const int g = code.number;
@@ -227,12 +256,9 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     request_.motion_given = true;
     request_.motion_offset = code.offset;
   };
-  const auto refuse = [&](std::string_view what, std::string_view instead) {
-    error(code.offset, "not-supported", fmt::format("G{} ({}) is not supported; {} was expected", g, what, instead),
-          fmt::format("G{}", g));
-  };
   const auto set_blending = [&](int number) {
     blending_ = number;
+    before_cycle832_.reset();
     const bool stops = number == 60;
     state_.path_control = stops ? PathControl::exact_stop : PathControl::blend;
     state_.path_g = stops ? 61 : 64;
@@ -240,41 +266,47 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     set_mode_word(fmt::format("G{}", number));
     set_contouring();
   };
+  // Units, planes and dimensions were read before; the others change no move. DISC: corners are arcs.
+  constexpr std::array kPassed{17,  18,  19,  20,  21,  62,  70,  71,  90,  91,  97,  140, 141, 142, 143,
+                               290, 340, 341, 450, 451, 460, 461, 462, 621, 700, 710, 971, 972, 973};
+  if (std::ranges::find(kPassed, g) != kPassed.end()) return;
+  struct Refused {
+    int first, last;
+    std::string_view what, instead;
+  };
+  constexpr std::array kRefused{Refused{33, 35, "thread cutting", "a tapping cycle"},
+                                Refused{58, 59, "programmable shift", "TRANS or ATRANS"},
+                                Refused{96, 96, "constant cutting speed", "G97 with S"},
+                                Refused{147, 148, "smooth approach and retraction", "G1 to G3"},
+                                Refused{247, 248, "smooth approach and retraction", "G1 to G3"},
+                                Refused{291, 291, "ISO mode", "a program in ISO G code"},
+                                Refused{347, 348, "smooth approach and retraction", "G1 to G3"},
+                                Refused{931, 931, "feed by duration", "G94"},
+                                Refused{961, 962, "constant cutting speed", "G97 with S"}};
+  for (const Refused& r : kRefused)
+    if (g >= r.first && g <= r.last)
+      return error(code.offset, "not-supported",
+                   fmt::format("G{} ({}) is not supported; {} was expected", g, r.what, r.instead),
+                   fmt::format("G{}", g));
+  if (g >= 810 && g <= 829)
+    return report_.warning(code.offset, "no-effect",
+                           fmt::format("G{} of the machine's maker is read without effect", g), fmt::format("G{}", g));
   switch (g) {
     case 0:
-      return set_motion(Motion::rapid);
     case 1:
-      return set_motion(Motion::linear);
     case 2:
-      return set_motion(Motion::clockwise);
     case 3:
-      return set_motion(Motion::counter_clockwise);
+      return set_motion(static_cast<Motion>(g));
     case 4:
       request_.dwell = true;
       return;
     case 9:
       request_.exact_stop = true;
       return;
-    case 17:
-    case 18:
-    case 19:
-    case 20:
-    case 21:
-    case 70:
-    case 71:
-    case 700:
-    case 710:
-    case 90:
-    case 91:
-      return;
     case 25:
     case 26:
       request_.limits = true;
       return;
-    case 33:
-    case 34:
-    case 35:
-      return refuse("thread cutting", "a tapping cycle");
     case 331:
       return set_motion(Motion::tapping_in);
     case 332:
@@ -288,16 +320,12 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     case 153:
       request_.machine_frame = true;
       return;
-    case 58:
-    case 59:
-      return refuse("programmable shift", "TRANS or ATRANS");
-    case 60:
-    case 64:
-      return set_blending(g);
     case 601:
     case 602:
     case 603:
       return set_mode_word(fmt::format("G{}", g));
+    case 60:
+    case 64:
     case 641:
     case 642:
     case 643:
@@ -305,9 +333,6 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     case 645:
     case 646:
       return set_blending(g);
-    case 62:
-    case 621:
-      return;
     case 63:
       return set_motion(Motion::linear);
     case 74:
@@ -320,75 +345,16 @@ void BlockRunner::read_g_code(const CodeWord& code) {
       return set_feed_mode(FeedMode::per_minute);
     case 95:
       return set_feed_mode(FeedMode::per_revolution);
-    case 931:
-      return refuse("feed by duration", "G94");
     case 942:
     case 952:
       return set_feed_mode(g == 942 ? FeedMode::per_minute : FeedMode::per_revolution);
-    case 96:
-    case 961:
-    case 962:
-      return refuse("constant cutting speed", "G97 with S");
-    case 97:
-    case 971:
-    case 972:
-    case 973:
-      return;
     case 110:
     case 111:
     case 112:
       request_.pole = g;
       return;
-    case 140:
-    case 141:
-    case 142:
-    case 143:
-    case 340:
-    case 341:
-      return;
-    case 147:
-    case 148:
-    case 247:
-    case 248:
-    case 347:
-    case 348:
-      return refuse("smooth approach and retraction", "G1 to G3");
-    case 290:
-      return;
-    case 291:
-      return refuse("ISO mode", "a program in ISO G code");
-    case 450:
-    case 451:
-      return;  // DISC: corners are arcs; G451 lines
-    case 460:
-    case 461:
-    case 462:
-      return;
     case 500:
       return set_work_offset(500);
-    case 810:
-    case 811:
-    case 812:
-    case 813:
-    case 814:
-    case 815:
-    case 816:
-    case 817:
-    case 818:
-    case 819:
-    case 820:
-    case 821:
-    case 822:
-    case 823:
-    case 824:
-    case 825:
-    case 826:
-    case 827:
-    case 828:
-    case 829:
-      return report_.warning(code.offset, "no-effect",
-                             fmt::format("G{} of the machine's maker is read without effect", g),
-                             fmt::format("G{}", g));
     case 43:
     case 44:
     case 49:
@@ -439,11 +405,15 @@ void BlockRunner::read_feed() {
     error(f.offset, "feed", fmt::format("F {:g} is negative; a feed greater than zero was expected", f.value));
     return;
   }
-  feed_ = state_.feed_mode == FeedMode::inverse_time     ? f.value / 60
-          : state_.feed_mode == FeedMode::per_revolution ? f.value * unit_mm()
-                                                         : mm_per_s_from_mm_per_min(f.value * unit_mm());
+  feed_ = internal_feed(f.value);
   feed_given_ = true;
   feed_by_variable_ = f.by_expression;
+}
+
+double BlockRunner::internal_feed(double value) const {
+  return state_.feed_mode == FeedMode::inverse_time     ? value / 60
+         : state_.feed_mode == FeedMode::per_revolution ? value * unit_mm()
+                                                        : mm_per_s_from_mm_per_min(value * unit_mm());
 }
 
 void BlockRunner::read_spindle_speed() {

@@ -217,6 +217,8 @@ void BlockRunner::dwell() {
   } else {
     return error(words_.offset(), "dwell", "G4 has no time; F in seconds or S in turns was expected");
   }
+  if (words_.has_any("XYZ"))
+    error(words_.offset(), "dwell", "G4 with X, Y or Z, which it does not move; a block of its own was expected");
   if (!(seconds >= 0))
     return error(words_.offset(), "dwell",
                  fmt::format("a dwell of {:g} s is negative; zero or more was expected", seconds));

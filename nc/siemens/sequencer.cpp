@@ -529,41 +529,26 @@ void Sequencer::run_word(const Item& item) {
 /// Words of the language: addresses and commands.
 void Sequencer::run_command_word(const Item& item) {
   const WordRow& row = *item.row;
+  static constexpr std::pair<Does, Extra> kExtras[] = {{Does::radius, Extra::cr},
+                                                       {Does::opening_angle, Extra::ar},
+                                                       {Does::polar_angle, Extra::ap},
+                                                       {Does::polar_radius, Extra::rp},
+                                                       {Does::turns, Extra::turn},
+                                                       {Does::via_i, Extra::i1},
+                                                       {Does::via_j, Extra::j1},
+                                                       {Does::via_k, Extra::k1},
+                                                       {Does::chamfer, Extra::chf},
+                                                       {Does::chamfer_side, Extra::chr},
+                                                       {Does::rounding, Extra::rnd},
+                                                       {Does::line_angle, Extra::ang},
+                                                       {Does::blend_distance, Extra::adis},
+                                                       {Does::plane_angle, Extra::rpl},
+                                                       {Does::direction_a, Extra::a3},
+                                                       {Does::direction_b, Extra::b3},
+                                                       {Does::direction_c, Extra::c3}};
+  for (const auto& [does, extra] : kExtras)
+    if (row.does == does) return set_extra(item, extra);
   switch (row.does) {
-    case Does::radius:
-      return set_extra(item, Extra::cr);
-    case Does::opening_angle:
-      return set_extra(item, Extra::ar);
-    case Does::polar_angle:
-      return set_extra(item, Extra::ap);
-    case Does::polar_radius:
-      return set_extra(item, Extra::rp);
-    case Does::turns:
-      return set_extra(item, Extra::turn);
-    case Does::via_i:
-      return set_extra(item, Extra::i1);
-    case Does::via_j:
-      return set_extra(item, Extra::j1);
-    case Does::via_k:
-      return set_extra(item, Extra::k1);
-    case Does::chamfer:
-      return set_extra(item, Extra::chf);
-    case Does::chamfer_side:
-      return set_extra(item, Extra::chr);
-    case Does::rounding:
-      return set_extra(item, Extra::rnd);
-    case Does::line_angle:
-      return set_extra(item, Extra::ang);
-    case Does::blend_distance:
-      return set_extra(item, Extra::adis);
-    case Does::plane_angle:
-      return set_extra(item, Extra::rpl);
-    case Does::direction_a:
-      return set_extra(item, Extra::a3);
-    case Does::direction_b:
-      return set_extra(item, Extra::b3);
-    case Does::direction_c:
-      return set_extra(item, Extra::c3);
     case Does::modal_rounding:
       return runner_.set_modal_rounding(word_value(item, row.name));
     case Does::contour_tolerance:
@@ -571,9 +556,9 @@ void Sequencer::run_command_word(const Item& item) {
     case Does::offset_normal:
       return runner_.set_offset_normal(word_value(item, row.name));
     case Does::corner_feed:
-      report_.warning(item.offset, "no-effect", fmt::format("{} ({}) is read without effect", row.name, row.what),
-                      row.name);
-      return;
+      return runner_.set_corner_feed(word_value(item, row.name), row.name == "FRCM");
+    case Does::block_feed:
+      return runner_.set_block_feed(word_value(item, row.name));
     case Does::spindle_position:
       return runner_.orient_spindle();
     case Does::position_axis: {
@@ -601,30 +586,11 @@ CycleCall Sequencer::cycle_call(const Item& item) {
   CycleCall call;
   call.row = item.row;
   call.offset = item.offset;
-  static const std::map<std::string, double> kNames = {{"_OFF", 0},
-                                                       {"_FINISH", 1},
-                                                       {"_SEMIFIN", 2},
-                                                       {"_ROUGH", 3},
-                                                       {"_PRECISION", 4},
-                                                       {"_ORI_FINISH", 11},
-                                                       {"_ORI_SEMIFIN", 12},
-                                                       {"_ORI_ROUGH", 13},
-                                                       {"_ORI_PRECISION", 14},
-                                                       {"_TOP_SURFACE_SMOOTH_OFF", 0},
-                                                       {"_TOP_SURFACE_SMOOTH_ON", 0}};
   for (std::uint32_t i = 0; i < item.count; ++i) {
     const std::uint32_t node = tree().arguments[item.first + i];
     if (node == kNone) {
       call.values.emplace_back();
       continue;
-    }
-    const Node& n = tree().nodes[node];
-    if (n.kind == NodeKind::variable && n.count == 0 && !evaluator_.variable(n.name)) {
-      const auto known = kNames.find(tree().names[n.name]);
-      if (known != kNames.end()) {
-        call.values.emplace_back(Value{known->second, {}, {}});
-        continue;
-      }
     }
     call.values.emplace_back(evaluator_.value(node));
     if (!call.values.back()->text && std::isnan(call.values.back()->number))

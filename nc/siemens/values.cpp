@@ -1,6 +1,7 @@
 #include "nc/siemens/values.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -222,6 +223,14 @@ std::string Evaluator::axis_name(std::uint32_t index) {
   return text(index);
 }
 
+/// A name of the control in the second value of CYCLE832; its ones are the kind of machining.
+static std::optional<double> cycle832_kind(std::string_view name) {
+  constexpr std::array<std::string_view, 5> kKinds{"_OFF", "_FINISH", "_SEMIFIN", "_ROUGH", "_PRECISION"};
+  if (name == "_TOP_SURFACE_SMOOTH_ON" || name == "_TOP_SURFACE_SMOOTH_OFF") return 0;
+  const auto found = std::ranges::find(kKinds, name.starts_with("_ORI_") ? name.substr(4) : name);
+  return found == kKinds.end() ? std::nullopt : std::optional<double>(found - kKinds.begin());
+}
+
 Value Evaluator::value(std::uint32_t index) {
   const Node& n = node(index);
   if (depth_ > 200) throw RunError(n.offset, "expression", "an expression too deep to evaluate");
@@ -242,6 +251,7 @@ Value Evaluator::value(std::uint32_t index) {
       if (!found) {
         const std::string& name = tree_->names[n.name];
         if (name.size() <= 2) return text_value(name);  // an axis
+        if (const auto kind = cycle832_kind(name)) return {*kind, {}, {}};
         throw RunError(n.offset, "variable", fmt::format("{} is not declared here; DEF was expected before", name));
       }
       if (n.count == 0 && found->dimensions > 0)

@@ -135,7 +135,7 @@ constexpr auto kRows = std::to_array<WordRow>({
     WordRow{"FLIN", kCommand, Does::noted, "feed that changes along the block: read as FNORM"},
     WordRow{"FCUB", kCommand, Does::noted, "feed that changes along the block: read as FNORM"},
     WordRow{"FPO", kProcedure, Does::noted, "feed as a polynomial"},
-    WordRow{"FB", kAddress, Does::noted, "feed of one block: the modal F is taken"},
+    WordRow{"FB", kAddress, Does::block_feed, "feed of one block"},
     WordRow{"FZ", kAddress, Does::refused, "feed per tooth", "F in G94"},
     WordRow{"FD", kAddress, Does::noted, "feed with handwheel"},
     WordRow{"FA", kAddress, Does::nothing, "feed of a positioning axis"},

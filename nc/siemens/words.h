@@ -33,6 +33,7 @@ enum class Does : std::uint8_t {
   rounding,              // RND
   modal_rounding,        // RNDM
   corner_feed,           // FRC, FRCM
+  block_feed,            // FB
   line_angle,            // ANG
   blend_distance,        // ADIS
   blend_distance_rapid,  // ADISPOS

@@ -170,8 +170,7 @@ TEST(Klartext, TheWayToPhGoesAsTheBlockBefore) {
     return out;
   };
   EXPECT_EQ(speeds("3 APPR LT X+20 Y+0 LEN5 R0 F100\n4 L X+30\n"), "FMAX 100 100");
-  EXPECT_EQ(speeds("3 L X+5 F400\n4 APPR LN X+20 Y+0 LEN5 R0 F100\n5 L X+30\n"), "400 400 100 100");
-  EXPECT_EQ(speeds("3 APPR CT X+20 Y+10 CCA90 R5 R0 F100\n4 L X+30\n"), "FMAX 100 100");
+  EXPECT_EQ(speeds("3 L X+5 F400\n4 APPR LT X+20 Y+0 LEN5 R0 F100\n5 L X+30\n"), "400 400 100 100");
   EXPECT_EQ(speeds("3 APPR LCT X+20 Y+10 R5 R0 F100\n4 L X+30\n"), "100 100 100");
 }
 
@@ -399,7 +398,7 @@ TEST(Klartext, DrillingCycles) {
   EXPECT_EQ(cycle("200 Q200=2 Q201=-10 Q206=100 Q202=10 Q210=0 Q203=+1 Q204=20 Q211=0", place),
             "0 0 50; 5 6 50; 5 6 3; 5 6 -9; 5 6 3; 5 6 21");
   EXPECT_EQ(cycle("200 Q200=2 Q201=-10 Q206=100 Q202=5 Q210=0 Q203=+0 Q204=2 Q211=0.5", place),
-            "0 0 50; 5 6 50; 5 6 2; 5 6 -5; 5 6 2; 5 6 -4.8; 5 6 -10; 5 6 -10; 5 6 2");
+            "0 0 50; 5 6 50; 5 6 2; 5 6 -5; 5 6 2; 5 6 -3; 5 6 -10; 5 6 -10; 5 6 2");
   EXPECT_EQ(
       cycle("203 Q200=2 Q201=-9 Q206=100 Q202=5 Q210=0 Q203=+0 Q204=2 Q212=1 Q213=3 Q205=1 Q211=0 Q208=0 Q256=0.5",
             place),
@@ -438,6 +437,75 @@ TEST(Klartext, PatternsOfPlaces) {
   EXPECT_EQ(cycle("200 Q200=2 Q201=-3 Q206=100 Q202=5 Q210=0 Q203=+0 Q204=2 Q211=0",
                   "5 PATTERN DEF POS1 (X+1 Y+2 Z+0) POS2 (X+3 Y+4 Z+0)\n6 CYCL CALL PAT FMAX M3\n"),
             "0 0 50; 1 2 50; 1 2 2; 1 2 -3; 1 2 2; 3 4 2; 3 4 -3; 3 4 2");
+}
+
+/// Ways in which people write words, and where the tool goes by them.
+TEST(Klartext, WordsAsPeopleWriteThem) {
+  struct Row {
+    const char *lines, *ends;
+  };
+  const std::string old_pocket =
+      "L Z+2 FMAX\nTOOL DEF 1 L+0 R+5\nCYCL DEF 4.0 POCKET\nCYCL DEF 4.1 SET UP 2\nCYCL DEF 4.2 DEPTH -4\nCYCL DEF 4.3 "
+      "PECKG 4 F80\nCYCL DEF 4.4 X20\nCYCL DEF 4.5 Y12\nCYCL DEF 4.6 F100 DR+\nCYCL CALL\n";
+  const Row rows[] = {
+      // A ~ too many before a statement.
+      {"CYCL DEF 7.0 SHIFT ~\nCYCL DEF 7.1 X+10 ~\nL X+1\n", "11 0 0"},
+      {"Q1 = 4 ; text ~\nL X+Q1 ; text ~\nL X+5 ~\nY+2\n", "4 0 0; 5 2 0"},
+      {"CYCL DEF 240 C Q200=2 Q343=0 Q201=-1 Q206=90 Q203=0 ~\nQ204=2 ~\nL X+5 FMAX M99\n",
+       "5 0 0; 5 0 2; 5 0 -1; 5 0 2"},
+      {"Q 2=7\nL X+Q 2\n", "7 0 0"},
+      {"DECLARE STRING QS1 = \"ABC\"\nQ1 = STRLEN ( SRC_QS1 )\nL X+Q1\n", "3 0 0"},
+      {"QS1 = SYSSTR ( ID10 NR1 )\nQ1 = CFGREAD ( KEY_QS1 TAG_QS1 )\nL X+1\n", "1 0 0"},
+      {"FUNCTION DWELL TIME1\nFUNCTION MODE MILL\nL X+1\n", "0 0 0; 1 0 0"},
+      {"CC X+10 Y+0\nCP IPA+0 DR+ IZ-5\n", "0 0 -5"},
+      {"CYCL DEF 240 C Q200=2 Q343=0 Q201=-1 Q206=90 Q203=0 Q204=2\nCYCL CALL POS IX+3 Y+4 Z+2 FMAX\n",
+       "0 0 2; 3 4 2; 3 4 -1; 3 4 2"},
+      // The tool comes from the right of the contour: R0 says nothing.
+      {"L X-20 Y-20\nAPPR LCT X+0 Y+0 R5 R0\nCR X+10 Y+0 R+5 DR-\n", "-20 -20 0; -1.68082 -3.73939 0; 0 0 0; 10 0 0"},
+      {"CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP 2\nCYCL DEF 1.2 DEPTH -50\nCYCL DEF 1.3 PECKG 30\nCYCL DEF 1.4 DWELL "
+       "0\n"
+       "CYCL DEF 1.5 F100\nCYCL CALL\n",
+       "0 0 -32; 0 0 0; 0 0 -31; 0 0 -52; 0 0 0"},
+      {old_pocket.c_str(),
+       "0 0 2; 0 0 -4; -4 0 -4; 4 0 -4; 5 0 -4; 5 1 -4; -5 1 -4; -5 -1 -4; 5 -1 -4; 5 0 -4; 0 0 -4; 0 0 2"},
+      {"PLANE POINTS P1X+0 P1Y+0 P1Z+0 P2X+1 P2Y+0 P2Z+0 P3X+0 P3Y+1 P3Z+0 STAY\nL X+1\n", "1 0 0"},
+  };
+  for (const Row& row : rows) EXPECT_EQ(path(row.lines), row.ends) << row.lines;
+  const Read two =
+      read_text("BEGIN PGM A MM\nL X+1 Y+0 Z+0 FMAX\nEND PGM A MM\nBEGIN PGM B MM\nEND PGM B MM\n", {}, "p.h");
+  EXPECT_EQ(two.moves.moves.size(), 1u);
+  EXPECT_EQ(two.messages.size(), 1u);
+}
+
+TEST(Klartext, TheRetractionOfM140GoesAtItsFeed) {
+  const Read r = read_lines(with_start("3 L M140 MB 50 F300\n4 L M140 MB5\n"));
+  EXPECT_EQ(r.messages, Messages{});
+  ASSERT_EQ(r.moves.moves.size(), 3u);
+  EXPECT_EQ(r.moves.moves[1].kind, MoveKind::linear);
+  EXPECT_DOUBLE_EQ(r.moves.moves[1].feed_mm_per_s, 5);
+  EXPECT_EQ(r.moves.moves[2].kind, MoveKind::rapid);
+}
+
+TEST(Klartext, ACuttingSpeedIsTurnedIntoASpeed) {
+  const Read r =
+      read_lines("1 TOOL DEF 1 L+0 R+5\n2 TOOL CALL 1 Z S( VC = 100 )\n3 L X+0 FMAX\n4 TOOL CALL 1 Z S VC:50\n");
+  EXPECT_EQ(r.messages, Messages{});
+  EXPECT_NEAR(r.moves.states.front().spindle_speed_rpm, 100e3 / (10 * kPi), 1e-9);
+}
+
+/// With MOVE the tip keeps its place on the part; M130 leaves the plane for its block.
+TEST(Klartext, PlanesThatMoveAndM130) {
+  InterpreterOptions options;
+  options.rotary_axes = {{.letter = 'A'}, {.letter = 'C'}};
+  const Read r = read_lines(with_start("3 PLANE SPATIAL SPA+90 SPB+0 SPC+0 MOVE DIST50 FMAX\n4 L X+1 Y+2 Z+3 M130\n"
+                                       "5 L X+1 Y+2 Z+3\n"),
+                            options);
+  EXPECT_EQ(r.messages, Messages{});
+  ASSERT_EQ(r.moves.moves.size(), 4u);
+  EXPECT_EQ(r.moves.moves[1].open_axes, 0);
+  EXPECT_EQ(r.moves.state_of(r.moves.moves[1]).tip_control, TipControl::angles);
+  expect_near_mm(r.moves.moves[2].end_mm, {1, 2, 3});
+  expect_near_mm(r.moves.moves[3].end_mm, {1, -3, 2});
 }
 
 // --- wrong programs ------------------------------------------------------------------------------------------------
@@ -489,6 +557,45 @@ TEST(Klartext, WrongProgramsByTheirMessages) {
   EXPECT_EQ(
       one("L Z-5 RND R2"),
       "p.h:4:9: error: RND is no word of a Klartext block; coordinates, R0, F, DR or M were expected [not-a-word]");
+}
+
+/// One message each, and the block behind is still read.
+TEST(Klartext, WrongWordsGetOneMessage) {
+  struct Row {
+    const char *lines, *message;
+  };
+  const Row rows[] = {
+      {"CYC DEF 200\n",
+       "p.h:4:1: error: CYC begins no Klartext block that is known; L, C, TOOL CALL, CYCL DEF ... were "
+       "expected [not-a-word]"},
+      {"LBL FOO\n",
+       "p.h:4:1: error: LBL without a number or a name in quotes; LBL 1 or LBL \"NAME\" was expected [label]"},
+      {"Q1 = 5 / 0\n", "p.h:4:8: error: a division by zero [expression]"},
+      {"FN 4: Q1 = +5 DIV +0\n", "p.h:4:14: error: a division by zero [expression]"},
+      {"CYCL DEF 240 C Q200=2 Q201:-1\nL X+2 M99\n",
+       "p.h:4:23: error: Q201:-1 in CYCL DEF 240; Q parameters were expected [not-a-word]"},
+      {"PLANE SPATIAL SPX+1 STAY\n", "p.h:4:15: error: SPX+1 in PLANE SPATIAL is not understood [plane]"},
+      {"CC X+10 Y+0\nCP IPA+90 DR-\n",
+       "p.h:5:1: warning: IPA and DR have different signs; the arc is read with the size of IPA in the sense of DR; "
+       "the "
+       "same sign was expected [arc-sense]"},
+      {"FPOL X+0 Y+0\nFL X+1\nFC DR+ R10\n",
+       "p.h:4:1: error: FPOL (free contour programming) is not supported; L, C and CR blocks with end points were "
+       "expected "
+       "(and 2 more like it) [not-supported]"},
+      {"FN 23: Q1 = CDATA Q30\n",
+       "p.h:4:1: error: FN 23 and FN 24 (circles through points) are not supported; the centre "
+       "was expected in Q parameters [not-supported]"},
+      {"FUNCTION RESET FEED DWELL\n", "p.h:4:1: warning: FUNCTION RESET is read without effect [no-effect]"},
+  };
+  for (const Row& row : rows) {
+    const Read r = read_lines(with_start(std::string(row.lines) + "L Z+9\n"));
+    EXPECT_EQ(r.messages, Messages{row.message}) << row.lines;
+    EXPECT_EQ(r.moves.moves.back().end_mm.z(), 9) << row.lines;
+  }
+  EXPECT_EQ(said("APPR LN X+20 Y+0 LEN5 R0\nL X+30\n"),
+            Messages{"p.h:4:1: warning: APPR LN or CT without RL or RR is read as with RR, as an iTNC 530 goes; later "
+                     "controls stop here; RL or RR was expected [approach]"});
 }
 
 TEST(Klartext, CentresWithTheWrongSignAreNoticed) {

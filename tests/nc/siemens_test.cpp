@@ -359,6 +359,63 @@ TEST(Siemens, WrongProgramsGetAMessageAtTheLine) {
           "p.mpf:1:1: error: the program reaches SETAL(65000), an alarm of its own, which stops the machine [alarm]"}));
 }
 
+TEST(Siemens, WrongBlocksGetOneMessage) {
+  struct Row {
+    const char *lines, *message;
+  };
+  const Row rows[] = {
+      {"L1: G1 X1\n", "p.mpf:2:1: error: `L1` is no label; a name that begins with two letters was expected [label]"},
+      {"G0 G1 X1\n", "p.mpf:2:4: error: G0 and G1 in one block; one of them was expected [modal-group]"},
+      {"G90 G91\nG90\n", "p.mpf:2:5: error: G90 and G91 in one block; one of them was expected [modal-group]"},
+      {"G4 F1 X5\n",
+       "p.mpf:2:1: error: G4 with X, Y or Z, which it does not move; a block of its own was expected [dwell]"},
+      {"G1 X10 RND=20\nY10\n",
+       "p.mpf:2:8: warning: RND=20 is made smaller, since a block beside it is too short [corner-word]"},
+  };
+  for (const Row& row : rows) {
+    const Read r = read_siemens("G0 X0 Y0 Z0 F100\n" + std::string(row.lines) + "G1 Z9\n");
+    ASSERT_FALSE(r.messages.empty()) << row.lines;
+    EXPECT_EQ(r.messages.back(), row.message);
+    EXPECT_EQ(last(r).z(), 9) << row.lines;
+  }
+}
+
+/// FB holds for its block, FRC for its corner; without FRC the corner has the feed of the block that leads away.
+TEST(Siemens, FeedsOfBlocksAndCorners) {
+  const Read r = read_siemens("G1 X0 Y0 Z0 F600\nX10 RND=1\nY10 F1200\nX0 FB=300 RND=1 FRC=60\nY0\nX10 RND=20\nY5\n");
+  std::vector<double> feeds;
+  for (const Move& m : r.moves.moves) feeds.push_back(std::round(m.feed_mm_per_s * 60e6) / 1e6);
+  EXPECT_EQ(feeds, (std::vector<double>{600, 600, 1200, 1200, 300, 60, 1200, 1200, 1200, 1200}));
+  const Arc& shrunk = r.moves.arcs.back();  // as large as the shorter block lets it be
+  expect_near_mm(shrunk.center_mm, {5, 5, 0}, 1e-6);
+}
+
+/// D counts before G41 of its own block; the way in may be short.
+TEST(Siemens, TheEdgeOfABlockWithG41AndAShortWayIn) {
+  InterpreterOptions options{.inch = false};
+  options.tool_offsets[1].radius_mm = 5;
+  const std::string start = "T1 M6\nG0 X0 Y0 Z0\nG1 F100 ";
+  const Read none = read_siemens(start + "G41 D0 X10\nY20\nG40 X0\n", options);
+  EXPECT_EQ(none.messages, Messages{});
+  expect_near_mm(none.moves.moves[1].end_mm, {10, 0, 0});
+  const Read near = read_siemens(start + "G41 X3\nY20\nG40 X-20\n", options);
+  EXPECT_EQ(near.messages.size(), 1u);  // [not-editable]
+  expect_near_mm(near.moves.moves[1].end_mm, {-2, 0, 0});
+}
+
+/// CYCLE832 rounds corners, where G60 stood before; its names may be added up.
+TEST(Siemens, Cycle832EndsExactStop) {
+  const Read r = read_siemens(
+      "G60 G0 X0 Y0 Z0\nG1 F100\nCYCLE832(0.05,_TOP_SURFACE_SMOOTH_ON+_ORI_FINISH,1)\nX1\nCYCLE832()\nX2\n"
+      "CYCLE832(0.05,_FINISH,1)\nG60\nX3\n");
+  EXPECT_EQ(r.messages, Messages{});
+  std::vector<PathControl> found;
+  for (const Move& m : r.moves.moves) found.push_back(r.moves.state_of(m).path_control);
+  const auto stop = PathControl::exact_stop;
+  EXPECT_EQ(found, (std::vector{stop, PathControl::blend, stop, stop}));
+  EXPECT_EQ(r.moves.state_of(r.moves.moves[1]).blend_tolerance_mm, 0.05);
+}
+
 TEST(Siemens, AnEndlessLoopIsAnError) {
   InterpreterOptions options{.inch = false};
   options.max_repeated_blocks = 1000;
