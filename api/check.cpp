@@ -30,6 +30,7 @@
 #include "plausibility/plausibility.h"
 #include "report/check_summary.h"
 #include "report/joined_json.h"
+#include "report/mesh_file.h"
 #include "report/planned_picture.h"
 
 namespace camber {
@@ -188,9 +189,34 @@ report::CheckPicture picture_of(const nc::Interpretation& moves, const machine::
     for (machine::Axis& axis : picture.machine->axis) axis.travel_mm = machine::Axis{}.travel_mm;
     picture.offset_assumed = true;
   }
-  if (job && !job->part.mesh.empty()) picture.part = read_mesh(job->part.mesh);
+  if (job && !job->part.mesh.empty()) picture.part = machine::part_mesh(job->part);
   if (job && job->tools.size() == 1) picture.tool_diameter_mm = job->tools.begin()->second.diameter_mm;
   return picture;
+}
+
+/// On the part where rotary axes turn on a known machine, else X, Y and Z.
+void write_path(const std::string& path, const nc::Program& text, const nc::Interpretation& moves,
+                const machine::Machine* machine) {
+  report::PathPicture picture;
+  if (machine && machine->kinematics.given() && kinematics::has_rotary_motion(moves, *machine))
+    picture = report::tip_picture(kinematics::MachineProgram(text, moves, *machine), report::kMaxPathPoints);
+  const bool in_part = !picture.points.empty();
+  if (!in_part) picture = report::program_picture(moves, report::kMaxPathPoints);
+  report::write_path_arrays(path, picture, in_part);
+}
+
+/// What cannot be read is none: the check says why.
+void write_meshes(const machine::Job& job, const std::string& name) {
+  const auto write = [&](const char* end, const auto& read) {
+    std::string text;
+    try {
+      if (const TriangleMesh mesh = read(); !mesh.triangles.empty()) text = stl_text(mesh);
+    } catch (const InputError&) {
+    }
+    if (!text.empty()) write_file(name + end, text);
+  };
+  write("-part.stl", [&] { return job.part.mesh.empty() ? TriangleMesh{} : machine::part_mesh(job.part); });
+  write("-blank.stl", [&] { return report::blank_mesh(job); });
 }
 
 /// The page also shows which axis leaves its travel, and where.
@@ -206,8 +232,7 @@ Checked check_and_draw(const CheckAsked& asked, Diagnostics& found) {
   };
   try {
     Checked checked = check_program(asked, found, [&](const nc::Interpretation& moves) {
-      if (!asked.options.path.empty())
-        report::write_path_arrays(asked.options.path, report::program_picture(moves, report::kMaxPathPoints));
+      if (!asked.options.path.empty()) write_path(asked.options.path, text, moves, asked.machine);
       if (asked.options.page.empty()) return;
       picture = picture_of(moves, asked.machine, asked.job);
       before.program = nc::summarize(text, moves);
@@ -341,6 +366,7 @@ CheckedJob v0::check_job(const std::string& job_path, const ReadOptions& read, c
         own.path.clear();
       }
       const Job one = all.of_program(i, stock);
+      if (i == 0 && !options.meshes.empty()) write_meshes(one.impl().job, options.meshes);
       texts.push_back(read_program(all.programs[i], read));
       const CheckAsked asked{texts.back().impl(), &one.impl().job.machine, &one.impl().job, own};
       out.programs.push_back(checked_in_order(asked, one.impl().found, run, programs[i]));

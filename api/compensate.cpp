@@ -31,12 +31,17 @@ namespace {
 namespace fs = std::filesystem;
 using compensate::CompensationResult;
 
-/// The job as it was measured; the fit goes to `fit`.
+struct Measured {
+  std::vector<compensate::MeasuredPoint> points{};
+  std::optional<compensate::MeasuredFit> fit{};
+};
+
+/// The job as it was measured.
 machine::Job as_measured(const machine::Job& job, const CompensateOptions& request, Diagnostics& diagnostics,
-                         const simulate::Progress& progress, const simulate::Predictor& predictor,
-                         std::optional<compensate::MeasuredFit>& fit) {
+                         const simulate::Progress& progress, const simulate::Predictor& predictor, Measured& measured) {
   if (request.measured.empty()) return job;
-  const auto points = compensate::read_measured(request.measured);
+  auto& [points, fit] = measured;
+  points = compensate::read_measured(request.measured);
   fit = compensate::fit_measured(job, request.measured, points, request.measured_program, diagnostics, progress,
                                  predictor);
   return compensate::softened(job, fit->scale);
@@ -81,6 +86,7 @@ compensate::CompensateOptions loop_options(const CompensateOptions& request, sim
 struct CompensatedJob {
   machine::Job job;  ///< what was compensated: the given one, or as it was measured
   CompensationResult result;
+  std::vector<compensate::MeasuredPoint> measured{};
 };
 
 /// Throws InputError and BeyondModel. Writes nothing.
@@ -88,15 +94,16 @@ CompensatedJob compensate_job(const machine::Job& given, const CompensateOptions
                               const simulate::Progress& progress, const simulate::Predictor& predictor,
                               Diagnostics& diagnostics) {
   compensate::CompensateOptions options = loop_options(request, progress, predictor);
-  std::optional<compensate::MeasuredFit> fit;
+  Measured measured;
   CompensatedJob out{as_measured(with_levers(given, request.levers, diagnostics), request, diagnostics,
-                                 options.progress, predictor, fit),
+                                 options.progress, predictor, measured),
                      {}};
   const machine::Job& job = out.job;
   if (request.header || request.header_hash)
     options.header = [&](const auto& c) { return header_of(job, c, request.header_hash); };
   out.result = compensate::compensate(job, diagnostics, options);
-  out.result.uncertainty.measured = fit;
+  out.result.uncertainty.measured = measured.fit;
+  out.measured = std::move(measured.points);
   feedmodel::check_range(out.result.given.commanded(), job.program, job.machine, diagnostics);
   return out;
 }
@@ -157,8 +164,8 @@ void check_output(const std::string& output, const machine::Job& job) {
 }
 
 /// Reads both programs once more, for their stamps and their feed.
-std::string page_of(const machine::Job& job, const CompensationResult& result, const std::string& output,
-                    const Diagnostics& diagnostics) {
+std::string page_of(const CompensatedJob& done, const std::string& output, const Diagnostics& diagnostics) {
+  const auto& [job, result, measured] = done;
   Diagnostics ignored;  // said already
   const auto machined = [&](const SourceText& source) { return motion::simulate_motion(source, job, {}, ignored); };
   const auto rows = [&](const simulate::SimulatedProgram& program) {
@@ -171,9 +178,11 @@ std::string page_of(const machine::Job& job, const CompensationResult& result, c
   const auto after = motion::simulate_motion(SourceText(job.program, result.emitted.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
   if (!result.passes.text.empty()) from = machined(SourceText(job.program, result.passes.text)).moves_in_part();
-  return report::html_report(report::compensate_report(
-      job, result, {before, rows(before), result.surfaces.loads_before},
-      {after, rows(after), result.surfaces.loads_after}, output, diagnostics, from ? &*from : nullptr));
+  report::ReportData data = report::compensate_report(job, result, {before, rows(before), result.surfaces.loads_before},
+                                                      {after, rows(after), result.surfaces.loads_after}, output,
+                                                      diagnostics, from ? &*from : nullptr);
+  report::add_measured(data, measured);
+  return report::html_report(data);
 }
 
 /// The emitted program, and beside it the record by which it can be judged again and what is measured of it; a pipe has
@@ -252,7 +261,7 @@ CompensateResult api::compensate(const Job& given, const CompensateOptions& opti
     in_rounds = false;
     if (options.page) {
       run.steps()("writing the report", std::nullopt);
-      result.page = page_of(done.job, c, options.output, found);
+      result.page = page_of(done, options.output, found);
     }
     if (options.throw_if_unwritten) failed.throw_if_errors();
     result.unwritten = failed.all();

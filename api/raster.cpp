@@ -23,17 +23,6 @@ constexpr double kLeadInMm = 1;
 constexpr double kLargestPartMm = 1e4;
 constexpr double kFineToleranceMm = 0.004;  ///< below, coordinates have four decimals
 
-TriangleMesh read_closed_part(const std::string& path) {
-  TriangleMesh mesh = read_mesh(path);
-  if (const std::size_t open = mesh.open_edges(); open > 0)
-    fail_on_file(path,
-                 fmt::format("the mesh is not closed: {} of its edges have no second triangle, and the cutter could "
-                             "fall through; a closed one was expected",
-                             open),
-                 "stl-open");
-  return mesh;
-}
-
 std::string tool_numbers(const machine::Job& job) {
   std::string out;
   for (const auto& [number, tool] : job.tools) out += fmt::format("{}T{}", out.empty() ? "" : ", ", number);
@@ -142,7 +131,8 @@ RasterResult make_raster(const Job& given, const RasterOptions& asked, api::Run&
   plausibility::check_job_values(job, found);
   run.settle_first(found);
 
-  const TriangleMesh mesh = read_closed_part(part);
+  const TriangleMesh mesh = closed_mesh(asked.part.empty() ? machine::part_mesh(job.part) : read_mesh(part), part,
+                                        "and the cutter could fall through; a closed one was expected");
   const repath::DropCutter drop(mesh, removal::shape_of(tool));
   repath::RasterOptions rules{.boundary = raster_boundary(asked, part, drop),
                               .direction_rad = asked.direction_deg * kPi / 180,

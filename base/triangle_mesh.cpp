@@ -130,6 +130,28 @@ TriangleMesh read_stl(const std::string& path) {
   return mesh;
 }
 
+TriangleMesh closed_mesh(TriangleMesh mesh, const std::string& path, std::string_view so) {
+  if (const std::size_t open = mesh.open_edges(); open > 0)
+    fail_on_file(path,
+                 fmt::format("the mesh is not closed: {} of its edges {} no second triangle, {}", open,
+                             open == 1 ? "has" : "have", so),
+                 "stl-open");
+  return mesh;
+}
+
+std::string stl_text(const TriangleMesh& mesh) {
+  std::string out(80, ' ');
+  const auto append = [&](const auto& v) { out.append(reinterpret_cast<const char*>(&v), sizeof v); };
+  append(static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) append(0.0F);
+    for (const std::uint32_t corner : t)
+      for (int a = 0; a < 3; ++a) append(mesh.points[corner][a]);
+    append(std::uint16_t{0});
+  }
+  return out;
+}
+
 bool is_step_file(const std::string& path) {
   const std::size_t dot = path.rfind('.');
   if (dot == std::string::npos) return false;

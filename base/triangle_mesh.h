@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/geometry.h"
@@ -17,6 +18,12 @@ struct TriangleMesh {
   /// Number of edges for which this is not so.
   std::size_t open_edges() const;
 };
+
+/// The mesh of a file, which must be closed. Throws InputError [stl-open]; `so` says what follows where it is not.
+TriangleMesh closed_mesh(TriangleMesh mesh, const std::string& path, std::string_view so = "so it has no inside");
+
+/// Binary STL.
+std::string stl_text(const TriangleMesh& mesh);
 
 /// Binary or ASCII. Degenerate triangles are skipped. Throws InputError [file-missing], [stl-format], [stl-empty].
 TriangleMesh read_stl(const std::string& path);

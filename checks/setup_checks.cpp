@@ -87,15 +87,14 @@ void add(Severity severity, const std::string& file, std::string message, const 
 
 std::optional<machine::Box> stock_box(const machine::Job& job) {
   if (job.stock.box) return job.stock.box;
-  if (!job.stock.mesh.empty()) return stl_box(job.stock.mesh);
+  if (!job.stock.mesh.empty()) return box_of(read_mesh(job.stock.mesh));
   if (!job.stock.cylinder) return std::nullopt;
   const machine::Cylinder& c = *job.stock.cylinder;
   const double r = c.diameter_mm / 2;
   return machine::Box{c.base_mm - Vec3(r, r, 0), c.base_mm + Vec3(r, r, c.height_mm)};
 }
 
-machine::Box stl_box(const std::string& path) {
-  const TriangleMesh mesh = read_mesh(path);
+machine::Box box_of(const TriangleMesh& mesh) {
   machine::Box out{mesh.points.front().cast<double>(), mesh.points.front().cast<double>()};
   for (const auto& p : mesh.points) {
     out.min_mm = out.min_mm.cwiseMin(p.cast<double>());
@@ -193,7 +192,7 @@ void check_job(const machine::Job& job, const nc::Program& program, const nc::In
     if (const auto known = job.tools.find(tool); known != job.tools.end())
       places.radius_mm = std::max(places.radius_mm, known->second.diameter_mm / 2);
   check_places(program.source.name(), places, diagnostics);
-  if (!job.part.mesh.empty()) check_part_size(job.part.mesh, stl_box(job.part.mesh), *stock, diagnostics);
+  if (!job.part.mesh.empty()) check_part_size(job.part.mesh, box_of(machine::part_mesh(job.part)), *stock, diagnostics);
 }
 
 }  // namespace camber::checks

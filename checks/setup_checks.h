@@ -32,8 +32,7 @@ void check_places(const std::string& program, const Places& places, Diagnostics&
 /// Error [nothing-removed]: the undeflected sweep took nothing.
 void report_nothing_removed(const std::string& program, const Places& places, Diagnostics& diagnostics);
 
-/// Of an STL file, mm. Throws InputError as read_stl does.
-machine::Box stl_box(const std::string& path);
+machine::Box box_of(const TriangleMesh& mesh);
 
 /// Error [part-units] where the part's mesh would fit the stock at 25.4 times its size, or that much smaller.
 void check_part_size(const std::string& part, const machine::Box& mesh, const machine::Box& stock,

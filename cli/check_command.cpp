@@ -91,6 +91,11 @@ void add_check_command(CLI::App& app, const GlobalOptions& options, Action& chos
       ->add_option("--path", arguments->options.path,
                    "the path's points with line, tool and feed, as arrays for pictures")
       ->type_name("P.bin");
+  command
+      ->add_option("--meshes", arguments->options.meshes,
+                   "part and blank at their places, as NAME-part.stl and NAME-blank.stl; none of a box")
+      ->type_name("NAME")
+      ->needs("--job");
   auto* sheet = command->add_option("--sheet", arguments->sheet,
                                     "set-up sheet for A4: blank and zero, tools to scale, offsets, limits, times");
   sheet->type_name("OUT.html")->needs("--job");

@@ -19,14 +19,8 @@ constexpr double kBandVoxels = 4;
 TriangleMesh read_part(const machine::Job& job) {
   if (job.part.mesh.empty())
     fail_on_file(job.path, "has no [part] mesh, from which paths are made; one was expected", "part-missing");
-  TriangleMesh mesh = read_mesh(job.part.mesh);
-  if (const std::size_t open = mesh.open_edges(); open > 0)
-    fail_on_file(job.part.mesh,
-                 fmt::format("the mesh is not closed: {} of its edges have no second triangle, and the cutter could "
-                             "fall through; a closed one was expected",
-                             open),
-                 "stl-open");
-  return mesh;
+  return closed_mesh(machine::part_mesh(job.part), job.part.mesh,
+                     "and the cutter could fall through; a closed one was expected");
 }
 
 std::string place_text(const Vec3& p) { return fmt::format("X{:g} Y{:g} Z{:g}", p.x(), p.y(), p.z()); }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/triangle_mesh.h"
 #include "machine/compensation_settings.h"
 #include "machine/job_file.h"
 #include "machine/job_keys.h"
@@ -66,6 +67,12 @@ std::optional<Cylinder> read_cylinder(TomlTable& stock) {
 }
 
 }  // namespace
+
+TriangleMesh part_mesh(const PartDescription& part) {
+  TriangleMesh mesh = read_mesh(part.mesh);
+  for (Eigen::Vector3f& p : mesh.points) p = (p.cast<double>() + part.move_mm).cast<float>();
+  return mesh;
+}
 
 void read_stock(TomlTable table, const fs::path& folder, StockDescription& stock) {
   stock.box = read_box(table);
@@ -287,6 +294,8 @@ AdaptSettings read_adapt(TomlTable table) {
 
 void read_part(TomlTable table, const fs::path& folder, const std::map<int, Tool>& tools, PartDescription& part) {
   part.mesh = file_at(table, "mesh", folder);
+  if (const auto move = table.numbers("move_mm", 3, kAnyNumber, "[x, y, z], by which the mesh is moved,"))
+    part.move_mm = Vec3((*move)[0], (*move)[1], (*move)[2]);
   part.program = file_at(table, "program", folder);
   if (const auto operations = table.table("operations")) part.operations = read_operations(*operations, tools);
   if (const auto judged = table.table("judged")) part.judged = read_operations(*judged, tools);

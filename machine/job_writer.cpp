@@ -79,6 +79,7 @@ std::string part_text(const PartDescription& part) {
   if (part.mesh.empty() && part.program.empty() && !part.operations && !part.judged) return {};
   std::string out = "\n[part]\n";
   if (!part.mesh.empty()) out += toml_line("mesh", part.mesh);
+  if (part.move_mm != Vec3::Zero()) out += fmt::format("move_mm = {}\n", point_text(part.move_mm));
   if (!part.program.empty()) out += toml_line("program", part.program);
   if (part.operations) out += operations_text("part.operations", *part.operations);
   if (part.judged) out += operations_text("part.judged", *part.judged);

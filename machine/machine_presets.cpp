@@ -56,14 +56,6 @@ position_gain_per_s = 33.0              # 25 to 60: Takata 33
 feed_forward_percent = 90.0             # 0 to 100: Takata 90
 stiffness_N_per_um = 50.0               # 20 to 100: estimate
 
-[axis.y]
-max_velocity_mm_per_min = 30000.0       # 20000 to 48000: Takata 30000
-max_feed_mm_per_min = 18000.0           # 10000 to 25000: Takata 18000
-acceleration_mm_per_s2 = 3500.0         # 1500 to 7000: Takata 3500
-position_gain_per_s = 33.0              # 25 to 60: Takata 33
-feed_forward_percent = 90.0             # 0 to 100: Takata 90
-stiffness_N_per_um = 50.0               # 20 to 100: estimate
-
 [axis.z]
 max_velocity_mm_per_min = 18000.0       # 15000 to 40000: Takata 18000
 max_feed_mm_per_min = 18000.0           # 10000 to 25000: Takata 18000
@@ -93,14 +85,6 @@ position_gain_per_s = 150.0             # 80 to 300: estimate; direct drives
 feed_forward_percent = 95.0             # 50 to 100: estimate
 stiffness_N_per_um = 50.0               # 20 to 150: estimate
 
-[axis.y]
-max_velocity_mm_per_min = 90000.0       # 60000 to 120000: linear 1999: 90 to 120 m/min
-max_feed_mm_per_min = 40000.0           # 20000 to 60000: estimate
-acceleration_mm_per_s2 = 14000.0        # 8000 to 20000: linear 1999: 1.4 and 1.6 g
-position_gain_per_s = 150.0             # 80 to 300: estimate; direct drives
-feed_forward_percent = 95.0             # 50 to 100: estimate
-stiffness_N_per_um = 50.0               # 20 to 150: estimate
-
 [axis.z]
 max_velocity_mm_per_min = 90000.0       # 50000 to 120000: linear 1999: 90 to 120 m/min
 max_feed_mm_per_min = 40000.0           # 20000 to 60000: estimate
@@ -122,15 +106,6 @@ block_time_ms = 0.25                    # 0.05 to 0.6: estimate; high speed cont
 corner = { law = "blend", tolerance_mm = 0.005 }  # 0.002 to 0.02: estimate; the contour tolerance of finishing
 
 [axis.x]
-max_velocity_mm_per_min = 60000.0       # 30000 to 100000: estimate; data sheets
-max_feed_mm_per_min = 40000.0           # 20000 to 60000: estimate
-acceleration_mm_per_s2 = 12000.0        # 7000 to 25000: linear 1999: 10 m/s2 with screws, more with linear motors
-jerk_mm_per_s3 = 300000.0               # 50000 to 1000000: estimate
-position_gain_per_s = 120.0             # 60 to 300: estimate
-feed_forward_percent = 98.0             # 80 to 100: estimate
-stiffness_N_per_um = 60.0               # 30 to 150: estimate
-
-[axis.y]
 max_velocity_mm_per_min = 60000.0       # 30000 to 100000: estimate; data sheets
 max_feed_mm_per_min = 40000.0           # 20000 to 60000: estimate
 acceleration_mm_per_s2 = 12000.0        # 7000 to 25000: linear 1999: 10 m/s2 with screws, more with linear motors
@@ -171,14 +146,6 @@ position_gain_per_s = 50.0              # 30 to 100: estimate
 feed_forward_percent = 90.0             # 0 to 100: Takata 90
 stiffness_N_per_um = 40.0               # 20 to 100: estimate
 
-[axis.y]
-max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
-max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
-acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
-position_gain_per_s = 50.0              # 30 to 100: estimate
-feed_forward_percent = 90.0             # 0 to 100: Takata 90
-stiffness_N_per_um = 40.0               # 20 to 100: estimate
-
 [axis.z]
 max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
 max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
@@ -208,59 +175,6 @@ max_rpm = 18000.0                       # 12000 to 24000: data sheets
 chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
 )";
 
-constexpr std::string_view kFiveAxisTrunnionB = R"([control]
-period_ms = 1.0                         # 0.5 to 4: estimate
-block_time_ms = 1.0                     # 0.4 to 2: KAKEN: 1 and 2 ms
-corner = { law = "speed_difference", speed_difference_mm_per_min = 400 }  # 100 to 1000: estimate; KAKEN 246
-
-[kinematics]
-chain = ["part", "c", "b", "bed", "x", "y", "z", "spindle"]  # a trunnion that tilts about Y, a table that turns on it
-
-[axis.x]
-max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
-max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
-acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
-position_gain_per_s = 50.0              # 30 to 100: estimate
-feed_forward_percent = 90.0             # 0 to 100: Takata 90
-stiffness_N_per_um = 40.0               # 20 to 100: estimate
-
-[axis.y]
-max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
-max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
-acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
-position_gain_per_s = 50.0              # 30 to 100: estimate
-feed_forward_percent = 90.0             # 0 to 100: Takata 90
-stiffness_N_per_um = 40.0               # 20 to 100: estimate
-
-[axis.z]
-max_velocity_mm_per_min = 36000.0       # 20000 to 60000: estimate; data sheets
-max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
-acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
-position_gain_per_s = 50.0              # 30 to 100: estimate
-feed_forward_percent = 90.0             # 0 to 100: Takata 90
-stiffness_N_per_um = 50.0               # 30 to 150: estimate
-
-[axis.b]
-direction = [0, 1, 0]
-point_mm = [0, 0, 0]                    # -300 to 300: estimate; where the axes' lines lie: the machine's own parameters
-positive = "table"
-max_velocity_deg_per_min = 9000.0       # 3000 to 36000: estimate; data sheets
-acceleration_deg_per_s2 = 600.0         # 200 to 6000: estimate
-
-[axis.c]
-direction = [0, 0, 1]
-point_mm = [0, 0, 0]                    # -300 to 300: estimate; as B
-positive = "table"
-max_velocity_deg_per_min = 18000.0      # 6000 to 72000: estimate; data sheets
-acceleration_deg_per_s2 = 1200.0        # 300 to 10000: estimate
-
-[spindle]
-max_rpm = 18000.0                       # 12000 to 24000: data sheets
-
-[tool_change]
-chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
-)";
-
 constexpr std::string_view kTnc640 = R"([control]
 dialect = "heidenhain"
 period_ms = 3.0                         # 1 to 6: TNC 640, iTNC 530: path interpolation each 3 ms
@@ -273,14 +187,6 @@ acceleration_law = "bell"
 bell_time_ms = 25.0                     # 10 to 60: estimate; twice acceleration over jerk
 
 [axis.x]
-max_velocity_mm_per_min = 36000.0       # 20000 to 60000: data sheets of machines with this control
-max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
-acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
-position_gain_per_s = 80.0              # 50 to 150: estimate; feed-forward control
-feed_forward_percent = 98.0             # 90 to 100: estimate; feed-forward control is the rule
-stiffness_N_per_um = 50.0               # 20 to 150: estimate
-
-[axis.y]
 max_velocity_mm_per_min = 36000.0       # 20000 to 60000: data sheets of machines with this control
 max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
 acceleration_mm_per_s2 = 5000.0         # 2000 to 10000: estimate
@@ -333,14 +239,6 @@ position_gain_per_s = 66.0              # 16 to 150: MD32200: 1 to 9 (m/min)/mm
 feed_forward_percent = 98.0             # 0 to 100: estimate; FFWON is the rule, FFWOF: 0
 stiffness_N_per_um = 50.0               # 20 to 150: estimate
 
-[axis.y]
-max_velocity_mm_per_min = 40000.0       # 20000 to 60000: data sheets of machines with this control
-max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
-acceleration_mm_per_s2 = 5000.0         # 1000 to 10000: estimate; MD32300
-position_gain_per_s = 66.0              # 16 to 150: MD32200: 1 to 9 (m/min)/mm
-feed_forward_percent = 98.0             # 0 to 100: estimate; FFWON is the rule, FFWOF: 0
-stiffness_N_per_um = 50.0               # 20 to 150: estimate
-
 [axis.z]
 max_velocity_mm_per_min = 40000.0       # 20000 to 60000: data sheets of machines with this control
 max_feed_mm_per_min = 20000.0           # 10000 to 40000: estimate
@@ -356,6 +254,22 @@ max_rpm = 18000.0                       # 8000 to 30000: data sheets
 chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
 )";
 
+/// Y is as X where a preset does not give it; the trunnion of "-bc" tilts about Y instead of X.
+std::string text_of(const MachinePreset& preset) {
+  constexpr std::string_view kX = "[axis.x]\n";
+  constexpr std::array<std::array<std::string_view, 2>, 5> kTiltsAboutY{{{"\"c\", \"a\"", "\"c\", \"b\""},
+                                                                         {"about X", "about Y"},
+                                                                         {"[axis.a]", "[axis.b]"},
+                                                                         {"[1, 0, 0]", "[0, 1, 0]"},
+                                                                         {"as A", "as B"}}};
+  std::string out(preset.toml);
+  const std::size_t x = out.find(kX) + kX.size(), z = out.find("[axis.z]");
+  if (out.find("[axis.y]") == std::string::npos) out.insert(z, "[axis.y]\n" + out.substr(x, z - x));
+  if (preset.name.ends_with("-bc"))
+    for (const auto& [of_x, of_y] : kTiltsAboutY) out.replace(out.find(of_x), of_x.size(), of_y);
+  return out;
+}
+
 constexpr std::array kPresets{
     MachinePreset{"router", "a router for wood, plastics and light alloys, stepper motors", kRouter},
     MachinePreset{"vmc-40", "a vertical machining centre, ball screws, taper 40", kVmc40},
@@ -364,7 +278,7 @@ constexpr std::array kPresets{
     MachinePreset{"five-axis-trunnion", "a five-axis machining centre, tilting trunnion (A) and rotary table (C)",
                   kFiveAxisTrunnion},
     MachinePreset{"five-axis-trunnion-bc", "a five-axis machining centre, tilting trunnion (B) and rotary table (C)",
-                  kFiveAxisTrunnionB},
+                  kFiveAxisTrunnion},
     MachinePreset{"tnc-640", "a machining centre with a Heidenhain TNC 640 or iTNC 530", kTnc640},
     MachinePreset{"sinumerik-840d", "a machining centre with a Sinumerik 840D sl or 828D", kSinumerik840d},
 };
@@ -395,7 +309,7 @@ std::string machine_preset_text(const MachinePreset& preset) {
       "# Replace the values by those of your machine (docs/guide/machine-file.md), then delete the next line: until\n"
       "# then every result says that the machine is assumed.\n"
       "assumed = \"{}{}\"\n\n{}",
-      preset.what, kPresetPrefix, preset.name, preset.toml);
+      preset.what, kPresetPrefix, preset.name, text_of(preset));
 }
 
 }  // namespace camber::machine

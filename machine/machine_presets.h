@@ -13,7 +13,8 @@ namespace camber::machine {
 struct MachinePreset {
   std::string_view name;
   std::string_view what;  ///< the class in words
-  /// machine.toml; each value is followed by "# LOW to HIGH: source", the range over machines of the class.
+  /// machine.toml, see machine_preset_text(); each value is followed by "# LOW to HIGH: source", the range over
+  /// machines of the class.
   std::string_view toml;
 };
 

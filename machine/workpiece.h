@@ -9,6 +9,10 @@
 #include "machine/number_range.h"
 #include "machine/simulation_settings.h"
 
+namespace camber {
+struct TriangleMesh;
+}
+
 namespace camber::machine {
 
 struct Box {
@@ -44,9 +48,13 @@ struct StockDescription {
 
 struct PartDescription {
   std::string mesh;                      ///< STL; empty: none
+  Vec3 move_mm = Vec3::Zero();           ///< from where the mesh stands in its file to its place in the program
   std::string program;                   ///< NC program that is the target; empty: the job's own
   std::optional<Operations> operations;  ///< operations of the target program; not given: the job's operations
   std::optional<Operations> judged;      ///< moves of the target program whose surface is judged; not given: all
 };
+
+/// The mesh of the part at its place in the program. Throws InputError as read_mesh() does.
+TriangleMesh part_mesh(const PartDescription& part);
 
 }  // namespace camber::machine

@@ -199,16 +199,9 @@ void read_operations(const std::string& path, const PlanInput& input, SetupPlan&
 }
 
 std::string stl_text(const TriangleSolid& solid) {
-  std::string out(80, ' ');
-  const auto append = [&](const auto& v) { out.append(reinterpret_cast<const char*>(&v), sizeof v); };
-  append(static_cast<std::uint32_t>(solid.triangles.size()));
-  for (const Triangle& t : solid.triangles) {
-    for (int i = 0; i < 3; ++i) append(0.0F);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (int a = 0; a < 3; ++a) append(static_cast<float>(solid.corner(t, c)[a]));
-    append(static_cast<std::uint16_t>(0));
-  }
-  return out;
+  TriangleMesh mesh{{}, solid.triangles};
+  for (const Vec3& p : solid.points) mesh.points.push_back(p.cast<float>());
+  return camber::stl_text(mesh);
 }
 
 }  // namespace camber::plan

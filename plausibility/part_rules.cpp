@@ -40,7 +40,7 @@ std::string sides_out(const machine::Box& part, const machine::Box& stock) {
 
 void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
   if (e.job.part.mesh.empty() || e.program.moves_in_part().moves.empty()) return;
-  const removal::PartMesh part(e.job.part.mesh);
+  const removal::PartMesh part(closed_mesh(machine::part_mesh(e.job.part), e.job.part.mesh));
   if (e.stock) {
     const std::size_t before = diagnostics.errors();
     checks::check_part_size(e.job.part.mesh, {part.min_mm(), part.max_mm()}, *e.stock, diagnostics);
@@ -72,8 +72,8 @@ void look_at_part(const Evidence& e, Diagnostics& diagnostics) {
 void look_at_part_in_stock(const Evidence& e, Diagnostics& diagnostics) {
   if (e.job.part.mesh.empty() || !e.stock || !e.job.stock.vdb.empty()) return;
   constexpr double kCells = 300;
-  const TriangleMesh mesh = read_mesh(e.job.part.mesh);
-  const machine::Box box = checks::stl_box(e.job.part.mesh);
+  const TriangleMesh mesh = machine::part_mesh(e.job.part);
+  const machine::Box box = checks::box_of(mesh);
   if (const std::string sides = sides_out(box, *e.stock); !sides.empty())
     diagnostics.add(Diagnostic{
         Severity::warning,

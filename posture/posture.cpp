@@ -52,7 +52,7 @@ class Maker {
   /// False: refused.
   bool ready() {
     if (!tool_and_job_fit() || !moves_fit()) return false;
-    part_ = read_mesh(job_.part.mesh);
+    part_ = machine::part_mesh(job_.part);
     if (!moves_.machine_origin_mm) moves_.machine_origin_mm = Vec3::Zero();
     surroundings_ = surroundings_of(job_, part_, *moves_.machine_origin_mm);
     if (request_.options.stock) add_stock(job_, program_, moves_, first_, surroundings_, diagnostics_);

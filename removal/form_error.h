@@ -17,17 +17,11 @@
 
 namespace camber::removal {
 
-/// Reads an STL. Throws InputError [file-missing], [stl-format], [stl-empty], [stl-open] (an edge without a second
-/// triangle: the mesh has no inside).
-TriangleMesh read_closed_stl(const std::string& path);
-
 /// Signed distances to a closed mesh, negative inside, exact to the rounding of its coordinates. Found through a tree
 /// of boxes around the triangles; the sign is that of the angle-weighted normal at the nearest place (Baerentzen and
 /// Aanaes, "Signed distance computation using the angle weighted pseudonormal", 2005).
 class PartMesh {
  public:
-  /// Throws what read_closed_stl throws.
-  explicit PartMesh(const std::string& stl_path);
   explicit PartMesh(const TriangleMesh& closed);
   ~PartMesh();
   PartMesh(PartMesh&&) noexcept;

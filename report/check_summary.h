@@ -76,15 +76,16 @@ constexpr std::size_t kMaxPathPoints = 4'000'000;
 
 /// One line of JSON, padded with blanks to a multiple of four bytes, then the arrays that it names, little endian, each
 /// padded to a multiple of four bytes:
-///   {"camber_path": 1, "points": N, "origin_mm": [x, y, z], "chord_mm": c, "thinned": false,
+///   {"camber_path": 1, "points": N, "origin_mm": [x, y, z], "chord_mm": c, "thinned": false, "in_part": false,
 ///    "arrays": [["x", "f4"], ["y", "f4"], ["z", "f4"], ["line", "u4"], ["feed_mm_per_min", "f4"], ["tool", "u2"],
 ///               ["kind", "u1"]]}
 /// x, y, z: mm from the origin. line: from 1. feed: NaN on rapids. kind: of the way to the point, 0 start, 1 rapid,
-/// 2 line, 3 arc. `picture` has tools and feeds (program_picture).
-std::string path_arrays(const PathPicture& picture);
+/// 2 line, 3 arc. in_part: of the tip on the part, not X, Y and Z as programmed. `picture` has tools and feeds
+/// (program_picture).
+std::string path_arrays(const PathPicture& picture, bool in_part = false);
 
 /// Writes them. Throws InputError [file-unwritable].
-void write_path_arrays(const std::string& path, const PathPicture& picture);
+void write_path_arrays(const std::string& path, const PathPicture& picture, bool in_part = false);
 
 // The page of a program as it is: its path, figures, tools and what was found in it.
 

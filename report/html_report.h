@@ -59,6 +59,7 @@ struct ReportData {
   /// normals count.
   SurfaceSamples stock;
   double stock_cell_mm = 0;
+  SurfaceSamples measured{};  ///< points measured on a part, drawn over the surface; place, normal and error_um count
   std::vector<PathRun> path;  ///< none, one, or before and after
   /// Machine of a program with rotary motion: the page draws the tool and turns the part.
   std::optional<MachineView> machine{};

@@ -4,9 +4,11 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "base/output_file.h"
 #include "report/base64.h"
+#include "simulate/job_stock.h"
 
 namespace camber::report {
 namespace {
@@ -83,10 +85,9 @@ void write_stl(const std::string& path, const SurfaceMesh& mesh) {
   file.commit();
 }
 
-}  // namespace
-
-SurfaceMesh machined_mesh(const removal::Stock& stock) {
-  const removal::StockShape shape = removal::stock_shape(stock, std::numeric_limits<std::size_t>::max());
+/// Surface of a stock, on the finest grid that crosses it no more often than this.
+SurfaceMesh stock_mesh(const removal::Stock& stock, std::size_t max_crossings) {
+  const removal::StockShape shape = removal::stock_shape(stock, max_crossings);
   const auto& crossings = shape.crossings;
   return surface_mesh({crossings.size(),
                        [&crossings](std::size_t i) {
@@ -96,6 +97,28 @@ SurfaceMesh machined_mesh(const removal::Stock& stock) {
                          return out;
                        }},
                       shape.cell_mm, std::numeric_limits<std::uint32_t>::max());
+}
+
+}  // namespace
+
+SurfaceMesh machined_mesh(const removal::Stock& stock) {
+  return stock_mesh(stock, std::numeric_limits<std::size_t>::max());
+}
+
+TriangleMesh blank_mesh(machine::Job job) {
+  constexpr std::size_t kMaxCrossings = 150'000;
+  constexpr double kBand = 3, kCells = 150;
+  if (!job.stock.mesh.empty()) return read_mesh(job.stock.mesh);
+  if (const auto& c = job.stock.cylinder)
+    job.simulation.voxel_mm = std::max(c->diameter_mm, c->height_mm) / kCells;
+  else if (job.stock.vdb.empty())
+    return {};
+  const auto ready = [](const Vec3&, const Vec3&) {};
+  const SurfaceMesh mesh = stock_mesh(simulate::job_stock(job, kBand, ready), kMaxCrossings);
+  TriangleMesh out;
+  for (const SurfaceSample& v : mesh.vertices) out.points.push_back(v.place_mm.cast<float>());
+  out.triangles = triangles_of(mesh);
+  return out;
 }
 
 SurfaceMesh error_mesh(const FormErrorPoints& points, double grid_mm) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/triangle_mesh.h"
+#include "machine/job_file.h"
 #include "removal/stock.h"
 #include "report/form_error.h"
 #include "report/surface_mesh.h"
@@ -13,6 +15,9 @@ namespace camber::report {
 
 /// The closed surface of a machined stock, a vertex for every cell of a voxel's width that it passes.
 SurfaceMesh machined_mesh(const removal::Stock& stock);
+
+/// The blank where the program has it; of a field no finer than pictures need. Empty: it is a box, or there is none.
+TriangleMesh blank_mesh(machine::Job job);
 
 /// The surface that the program leaves, at the voxels' width; its vertices have the error of largest magnitude of their
 /// cell. `grid_mm`: width of the voxels.

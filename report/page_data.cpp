@@ -115,6 +115,13 @@ Json surface_json(const ReportData& data, const ReportOptions& options, PackedAr
   return out;
 }
 
+Json measured_json(const SurfaceSamples& measured, PackedArrays& arrays) {
+  std::vector<SurfaceSample> points;
+  for (const SurfaceSample& s : measured.all()) points.push_back(s);
+  return {{"place", triple(arrays, points, [](const SurfaceSample& s) -> const Vec3& { return s.place_mm; })},
+          {"error", arrays.add_quantised(column(points, [](const SurfaceSample& s) { return s.error_um; }))}};
+}
+
 /// Tool and rotary axes along the path.
 void add_poses(Json& out, const std::vector<PathRow>& rows, PackedArrays& arrays) {
   out["axis"] = triple(arrays, rows, [](const PathRow& r) -> const Vec3& { return r.axis; });
@@ -185,6 +192,7 @@ PageData page_data(const ReportData& data, const ReportOptions& options) {
   index["scales"] = {page.scale_um, page.scale_after_um};
   if (const Json view = view_of(data.surface); !view.is_null()) index["view"] = view;
   if (!data.surface.empty()) index["surface"] = surface_json(data, options, arrays, page);
+  if (!data.measured.empty()) index["measured"] = measured_json(data.measured, arrays);
   if (!data.stock.empty()) index["stock"] = stock_json(data, arrays, page);
   if (data.compared && data.names[0] != "before") index["names"] = data.names;
   index["runs"] = Json::array();

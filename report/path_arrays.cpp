@@ -28,7 +28,7 @@ PathKind kind_of(PathKind kind) {
   return kind == PathKind::kept_arc ? PathKind::arc : kind;
 }
 
-std::string head_of(const PathPicture& picture, const Vec3& origin) {
+std::string head_of(const PathPicture& picture, const Vec3& origin, bool in_part) {
   Json arrays = Json::array();
   for (const auto& [name, type] : {std::pair{"x", "f4"},
                                    {"y", "f4"},
@@ -42,7 +42,8 @@ std::string head_of(const PathPicture& picture, const Vec3& origin) {
             {"points", picture.points.size()},
             {"origin_mm", Json::array({origin.x(), origin.y(), origin.z()})},
             {"chord_mm", picture.chord_mm},
-            {"thinned", picture.thinned}};
+            {"thinned", picture.thinned},
+            {"in_part", in_part}};
   head["arrays"] = arrays;
   std::string text = head.dump();
   text.append((4 - (text.size() + 1) % 4) % 4, ' ');
@@ -51,10 +52,10 @@ std::string head_of(const PathPicture& picture, const Vec3& origin) {
 
 }  // namespace
 
-std::string path_arrays(const PathPicture& picture) {
+std::string path_arrays(const PathPicture& picture, bool in_part) {
   const std::size_t n = picture.points.size();
   const Vec3 origin = n > 0 ? picture.points.front() : Vec3(Vec3::Zero());
-  std::string out = head_of(picture, origin);
+  std::string out = head_of(picture, origin, in_part);
   for (int axis = 0; axis < 3; ++axis)
     add<float>(out, n, [&](std::size_t i) { return picture.points[i][axis] - origin[axis]; });
   add<std::uint32_t>(out, n, [&](std::size_t i) { return picture.block[i] + 1; });
@@ -64,6 +65,8 @@ std::string path_arrays(const PathPicture& picture) {
   return out;
 }
 
-void write_path_arrays(const std::string& path, const PathPicture& picture) { write_file(path, path_arrays(picture)); }
+void write_path_arrays(const std::string& path, const PathPicture& picture, bool in_part) {
+  write_file(path, path_arrays(picture, in_part));
+}
 
 }  // namespace camber::report

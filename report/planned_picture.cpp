@@ -123,7 +123,38 @@ class PlanDrawer {
   PathPicture out_;
 };
 
+PathPicture tip_path(const kinematics::MachineProgram& program) {
+  constexpr double kTurn_rad = kPi / 90, kArc_rad = kPi / 24;
+  const nc::Interpretation& moves = program.moves_in_program();
+  const kinematics::PartPath& path = *program.part_path();
+  PathPicture out;
+  for (std::uint32_t i = 0; i < moves.moves.size(); ++i) {
+    const nc::Move& move = moves.moves[i];
+    if (move.kind == nc::MoveKind::dwell || !path.end_known(i)) continue;
+    const bool begins = !path.start_known(i);
+    double pieces = path.turn_rad(i) / kTurn_rad;
+    if (move.arc != nc::Move::kNoArc) pieces = std::max(pieces, std::abs(moves.arcs[move.arc].sweep_rad) / kArc_rad);
+    const int n = begins ? 1 : std::max(1, static_cast<int>(std::ceil(pieces)));
+    for (int k = begins || out.points.empty() ? 0 : 1; k <= (begins ? 0 : n); ++k) {
+      out.points.push_back(path.pose_at(i, static_cast<double>(k) / n).tip_mm);
+      out.kind.push_back(k == 0                             ? PathKind::start
+                         : move.kind == nc::MoveKind::rapid ? PathKind::rapid
+                         : move.arc != nc::Move::kNoArc     ? PathKind::arc
+                                                            : PathKind::line);
+      out.block.push_back(move.block);
+      out.ends.push_back(k == n ? 1 : 0);
+      out.tool.push_back(static_cast<std::uint32_t>(std::max(0, moves.state_of(move).tool)));
+      out.feed_mm_per_min.push_back(feed_of(move));
+    }
+  }
+  return out;
+}
+
 }  // namespace
+
+PathPicture tip_picture(const kinematics::MachineProgram& program, std::size_t most) {
+  return thinned_picture(tip_path(program), picture_chord_mm(program.commanded()), most);
+}
 
 PathPicture planned_picture(const nc::Interpretation& program, const machine::Machine& machine, std::size_t most) {
   const double chord_mm = picture_chord_mm(program);

@@ -69,7 +69,7 @@ std::string posture_page(const PosturedOverhangs& overhangs, const PostureAsked&
   page.tables = {before_and_after(program)};
   if (overhangs.rows.size() > 1) page.tables.push_back(overhang_table(overhangs.rows));
   page.warnings = warnings;
-  page.part = read_mesh(job.part.mesh);
+  page.part = machine::part_mesh(job.part);
   page.work_origin_mm = program.postured.origin_mm;
   page.tool_diameter_mm = job.tools.at(program.postured.tool).diameter_mm;
   page.notes = {

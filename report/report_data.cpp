@@ -326,4 +326,11 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   return data;
 }
 
+void add_measured(ReportData& data, const std::vector<compensate::MeasuredPoint>& points) {
+  std::vector<SurfaceSample> samples;
+  for (const compensate::MeasuredPoint& p : points)
+    samples.push_back({.place_mm = p.place_mm, .normal = p.normal, .error_um = 1000 * p.error_mm});
+  data.measured = samples;
+}
+
 }  // namespace camber::report

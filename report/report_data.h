@@ -46,4 +46,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
                              CompensatedRun before, CompensatedRun after, const std::string& output,
                              const Diagnostics& diagnostics, const nc::Interpretation* shifted_from = nullptr);
 
+/// Points measured on a part, drawn over the map.
+void add_measured(ReportData& data, const std::vector<compensate::MeasuredPoint>& points);
+
 }  // namespace camber::report

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/diagnostics.h"
+#include "base/triangle_mesh.h"
 #include "checks/setup_checks.h"
 
 namespace camber::simulate {
@@ -47,7 +48,7 @@ removal::Stock job_stock(const machine::Job& job, double band,
   if (job.stock.mesh.empty())
     fail_on_file(job.path, "has no stock; [stock] with box_mm, cylinder, mesh or vdb was expected", "stock-missing");
   // What the stock alone needs is asked before the mesh takes its part.
-  const machine::Box box = checks::stl_box(job.stock.mesh);
+  const machine::Box box = checks::box_of(read_mesh(job.stock.mesh));
   about_to(box.min_mm, box.max_mm);
   // A leaf of voxels is skipped by the distance at its centre, so the mesh's band must hold a leaf's half diagonal.
   const removal::MeshDistance mesh(job.stock.mesh, voxel, (band + 8) * voxel);

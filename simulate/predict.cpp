@@ -9,6 +9,7 @@
 
 #include "base/process_memory.h"
 #include "base/stage.h"
+#include "base/triangle_mesh.h"
 #include "checks/setup_checks.h"
 #include "motion/job_checks.h"
 #include "motion/operations.h"
@@ -320,7 +321,7 @@ Target make_target(const Job& job, const SimulatedProgram& target, Diagnostics& 
   diagnostics.throw_if_errors();
   std::optional<removal::PartMesh> part;
   if (!job.part.mesh.empty() && work.judged) {
-    part.emplace(job.part.mesh);
+    part.emplace(closed_mesh(machine::part_mesh(job.part), job.part.mesh));
     checks::check_part_size(job.part.mesh, {part->min_mm(), part->max_mm()}, where.stock, diagnostics);
     diagnostics.throw_if_errors();
   }

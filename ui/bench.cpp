@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -51,6 +52,15 @@ json read_json(const Folder& folder, const std::string& name) {
   } catch (const Refused&) {
     return nullptr;
   }
+}
+
+/// The first line of a file of arrays; {}: there is none.
+json path_head(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  std::getline(file, line);
+  const json out = json::parse(line, nullptr, false);
+  return out.is_object() ? out : json::object();
 }
 
 /// Single figures and those of one group: what a table of jobs has room for.
@@ -248,6 +258,9 @@ json Bench::checked(const Command& command, const std::string& stem, const std::
           {"messages", done.messages},
           {"figures", read_json(folder_, command.figures)},
           {"path", there(at + ".path")},
+          {"path_in_part", path_head(folder_.place(at + ".path")).value("in_part", false)},
+          {"part", there(at + "-part.stl")},
+          {"blank", there(at + "-blank.stl")},
           {"sheet", there(at + ".html")}};
 }
 

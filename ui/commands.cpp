@@ -129,8 +129,11 @@ Command run_command(const Folder& folder, const JobSummary& job, const std::stri
 
 Command check_command(const JobSummary& job, const std::string& scratch, const std::string& stem) {
   const std::string at = scratch + "/" + stem;
-  return {
-      {"check", "--job", job.name, "--json", at + ".json", "--sheet", at + ".html"}, {}, at + ".html", at + ".json"};
+  return {{"check", "--job", job.name, "--json", at + ".json", "--sheet", at + ".html", "--path", at + ".path",
+           "--meshes", at},
+          {},
+          at + ".html",
+          at + ".json"};
 }
 
 Command check_program_command(const std::string& program, const Options& options, const std::string& scratch,

@@ -29,6 +29,8 @@ struct ToolUse {
 struct CheckOptions {
   std::string page{};     ///< file: page with a picture of the path; also where an axis of a machine leaves its travel
   std::string path{};     ///< file: the path's points as arrays for pictures; of a job the first program's
+  std::string meshes{};   ///< check_job: part and blank as STL files of this name and "-part.stl", "-blank.stl", where
+                          ///< the program has them; a blank that is a box has none
   bool sheet = false;     ///< also CheckedJob::sheet
   std::string program{};  ///< check_job: instead of the job's programs
 };

@@ -25,7 +25,7 @@ struct MeshDistance::Impl {
 
 MeshDistance::MeshDistance(const std::string& path, double voxel_mm, double band_mm) {
   openvdb::initialize();
-  const TriangleMesh mesh = read_closed_stl(path);
+  const TriangleMesh mesh = closed_mesh(read_mesh(path), path);
   require_mesh_memory(path, mesh, voxel_mm, band_mm, free_memory_bytes());
   Eigen::Vector3f lo = mesh.points.front(), hi = lo;
   std::vector<openvdb::Vec3s> points;

@@ -62,16 +62,6 @@ struct Box {
 
 }  // namespace
 
-TriangleMesh read_closed_stl(const std::string& path) {
-  TriangleMesh mesh = read_mesh(path);
-  if (const std::size_t open = mesh.open_edges(); open > 0)
-    fail_on_file(path,
-                 fmt::format("the mesh is not closed: {} of its edges {} no second triangle, so it has no inside", open,
-                             open == 1 ? "has" : "have"),
-                 "stl-open");
-  return mesh;
-}
-
 class PartMesh::Tree {
  public:
   explicit Tree(const TriangleMesh& mesh) : points_(mesh.points), triangles_(mesh.triangles) {
@@ -212,8 +202,6 @@ double PartMesh::Tree::distance_mm(const Vec3& p) const {
   }
   return std::copysign(std::sqrt(least), side);
 }
-
-PartMesh::PartMesh(const std::string& stl_path) : PartMesh(read_closed_stl(stl_path)) {}
 
 PartMesh::PartMesh(const TriangleMesh& closed) : tree_(std::make_unique<Tree>(closed)) {
   Box box;

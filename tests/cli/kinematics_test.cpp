@@ -1,5 +1,7 @@
 // camber check on machines with rotary axes.
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -8,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/geometry.h"
 #include "tests/support/ball_job.h"
 #include "tests/support/csv_columns.h"
 #include "tests/support/open_page.h"
@@ -537,6 +540,46 @@ TEST(CheckFiveAxes, ShowsTheMachineAlongTheProgram) {
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(tests::open_page("machine", folder / "r.html", folder / "r.json"), "") << name;
   }
+}
+
+/// Under tool-centre-point control X, Y and Z are the tip on the part. Posted, they are the linear axes.
+TEST(CheckFiveAxes, WritesThePathOfTheTipOnThePart) {
+  const TempFolder folder;
+  const std::string machine = " --machine '" + kFiveAxis + "machine.toml'";
+  ASSERT_EQ(run_camber(folder, "post '" + kFiveAxis + "dome.nc' -o joints.nc" + machine).status, 0);
+  const auto points = [&](const std::string& asked, bool in_part) {
+    EXPECT_EQ(run_camber(folder, "check " + asked + " --path p.bin").status, 0);
+    const std::string text = tests::file_text(folder / "p.bin");
+    const std::size_t end = text.find('\n');
+    const auto head = nlohmann::json::parse(text.substr(0, end));
+    EXPECT_EQ(head["in_part"], in_part);
+    const auto n = head["points"].get<std::size_t>();
+    std::vector<Vec3> out(n);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0; i < n; ++i) {
+        float v = 0;
+        std::memcpy(&v, text.data() + end + 1 + 4 * (n * a + i), sizeof v);
+        out[i][static_cast<Eigen::Index>(a)] = v + head["origin_mm"][a].get<double>();
+      }
+    return out;
+  };
+  const auto programmed = points("'" + kFiveAxis + "dome.nc'", false), linear_axes = points("joints.nc", false),
+             tip = points("joints.nc" + machine, true), given = points("'" + kFiveAxis + "dome.nc'" + machine, true);
+  const auto farthest = [](const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+    double most = 0;
+    for (const Vec3& p : from) {
+      double least = 1e9;
+      for (const Vec3& q : to) least = std::min(least, (p - q).norm());
+      most = std::max(most, least);
+    }
+    return most;
+  };
+  // The first moves of both come from elsewhere; chords of the arcs between are up to a millimetre long.
+  const std::vector<Vec3> dome(programmed.begin() + 4, programmed.end() - 4);
+  EXPECT_GT(dome.size(), 300U);
+  EXPECT_LT(farthest(dome, given), 1e-4);
+  EXPECT_LT(farthest(dome, tip), 0.01);  // the tolerance of post, and rounding of the words
+  EXPECT_GT(farthest(dome, linear_axes), 5);
 }
 
 TEST(CheckFiveAxes, ThePageShowsWhatLeavesItsTravel) {

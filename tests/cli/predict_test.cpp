@@ -318,5 +318,48 @@ TEST(Predict, WarnsWhereTheCutTakesMoreThanTheSpindleHas) {
   EXPECT_EQ(run_camber(folder, "predict job.toml -o result").err, "");
 }
 
+TriangleMesh block(const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+  TriangleMesh out;
+  for (int i = 0; i < 8; ++i)
+    out.points.emplace_back((i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z());
+  out.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return out;
+}
+
+TEST(Predict, MovesThePartAsAFileThatWasMovedByHand) {
+  const TempFolder folder;
+  write_job(folder);
+  const std::string job = tests::file_text(folder / "job.toml");
+  // Sums of these have no rounding.
+  TriangleMesh mesh = block({-7.5F, 4, 20}, {-4.5F, 6, 20.5F});
+  folder.write("elsewhere.stl", stl_text(mesh));
+  for (Eigen::Vector3f& p : mesh.points) p += Eigen::Vector3f(7.5F, -4, -21);
+  folder.write("in_place.stl", stl_text(mesh));
+  const auto predicted = [&](const std::string& part) {
+    folder.write("job.toml", job + "[part]\n" + part);
+    const auto run = run_camber(folder, "predict job.toml -o result");
+    EXPECT_EQ(run.status, 0) << run.err;
+    return tests::file_text(folder / "result/form_error.csv");
+  };
+  const std::string moved = predicted("mesh = \"elsewhere.stl\"\nmove_mm = [7.5, -4, -21]\n");
+  EXPECT_EQ(moved, predicted("mesh = \"in_place.stl\"\n"));
+  EXPECT_NE(moved, predicted("mesh = \"in_place.stl\"\nmove_mm = [0, 0, 0.125]\n"));
+}
+
+TEST(Predict, WritesOfThePartsMoveWhatItHasRead) {
+  const TempFolder folder;
+  write_job(folder);
+  const std::string job = tests::file_text(folder / "job.toml");
+  folder.write("part.stl", stl_text(block({0, 0, -1}, {3, 2, -0.5F})));
+  folder.write("job.toml", job + "[part]\nmesh = \"part.stl\"\nmove_mm = [1, -2.5, 0]\n");
+  const auto run = run_camber(folder, "predict job.toml -o result --effective-config");
+  EXPECT_NE(run.out.find("\nmove_mm = [1, -2.5, 0]\n"), std::string::npos) << run.out << run.err;
+  folder.write("job.toml", job + "[part]\nmesh = \"part.stl\"\nmove_mm = [1, -2.5]\n");
+  EXPECT_EQ(run_camber(folder, "predict job.toml -o result").err,
+            "job.toml:18:11: error: move_mm has 2 numbers; [x, y, z], by which the mesh is moved, was expected "
+            "[value-type]\n    move_mm = [1, -2.5]\n              ^\n");
+}
+
 }  // namespace
 }  // namespace camber

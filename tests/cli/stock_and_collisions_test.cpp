@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/triangle_mesh.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -56,6 +57,45 @@ TEST(StockOfAJob, WhatOneJobLeavesIsTheNextOnesBlank) {
   run = run_camber(folder, "predict job.toml -o s");
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_NEAR(removed_mm3(folder, "s"), 32, 0.4);
+}
+
+/// By the tetrahedra that its triangles make with the origin; less than 0 where they show inwards.
+double volume_mm3(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& t : mesh.triangles) {
+    const auto corner = [&](std::size_t i) { return Vec3(mesh.points[t[i]].cast<double>()); };
+    sum += corner(0).dot(corner(1).cross(corner(2))) / 6;
+  }
+  return sum;
+}
+
+TEST(StockOfAJob, IsWrittenAsAMeshForPictures) {
+  const TempFolder folder;
+  const std::string cylinder = "cylinder = { base_mm = [1, 2, -5], diameter_mm = 12, height_mm = 5 }";
+  write_job(folder, kSlot, kFlat, cylinder);
+  ASSERT_EQ(run_camber(folder, "check --job job.toml --meshes c").status, 0);
+  const TriangleMesh round = read_stl(folder / "c-blank.stl");
+  EXPECT_TRUE(round.closed());
+  EXPECT_NEAR(volume_mm3(round) / (kPi * 36 * 5), 1, 0.01);
+  for (const auto& p : round.points) EXPECT_LT(std::hypot(p.x() - 1, p.y() - 2), 6.001);
+
+  write_job(folder, kSlot, kFlat, "box_mm = [[0, -5, -5], [8, 5, 0]]");
+  ASSERT_EQ(run_camber(folder, "predict job.toml -o r").status, 0);
+  ASSERT_EQ(run_camber(folder, "check --job job.toml --meshes b").status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "b-blank.stl")) << "whoever reads the job sees the box";
+  // The same slot a millimetre deeper, in what is left: 8 x 10 x 5 less 64.
+  write_job(folder, kHead + "G0 X-4 Y0 Z5\nG0 Z-3\nG1 X12 F900\nG0 Z5\nM30\n", kFlat, "vdb = \"r/stock.vdb\"");
+  const auto run = run_camber(folder, "check --job job.toml --meshes v");
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NEAR(volume_mm3(read_stl(folder / "v-blank.stl")), 400 - 64, 4);
+
+  write_job(folder, kSlot, kFlat, "mesh = \"c-blank.stl\"\n[part]\nmesh = \"c-blank.stl\"\nmove_mm = [0, 0, -2]");
+  run_camber(folder, "check --job job.toml --meshes m");
+  EXPECT_EQ(tests::file_text(folder / "m-blank.stl"), tests::file_text(folder / "c-blank.stl"));
+  const TriangleMesh part = read_stl(folder / "m-part.stl");
+  ASSERT_EQ(part.points.size(), round.points.size());
+  for (std::size_t i = 0; i < part.points.size(); ++i)
+    EXPECT_LT((part.points[i] - round.points[i] - Eigen::Vector3f(0, 0, -2)).norm(), 1e-6F);
 }
 
 TEST(StockOfAJob, RefusesAFileThatIsNoVdb) {

@@ -86,7 +86,7 @@ TEST(PartMesh, ThatIsInsideOutHasTheSameInside) {
 /// OpenVDB's distances to the same mesh, on voxels.
 TEST(PartMesh, AgreesWithADistanceFieldOfASamplesPart) {
   const std::string path = CAMBER_SOURCE_DIR "/samples/10-raster/part.stl";
-  const PartMesh mesh(path);
+  const PartMesh mesh(closed_mesh(read_mesh(path), path));
   const MeshDistance field(path, 0.1, 0.5);
   std::mt19937 random(3);
   int near = 0;

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/triangle_mesh.h"
+#include "tests/support/csv_columns.h"
 #include "tests/support/open_page.h"
 #include "tests/support/run_camber.h"
 #include "tests/support/test_data.h"
@@ -50,6 +52,68 @@ TEST_F(Page, ShowsErrorsOfAProgramAtTheirLines) { EXPECT_EQ(checked("wrong_progr
 TEST_F(Page, JudgesWhatIsTypedAndWritesItInMillimetres) {
   tests::write_wall(folder_, "served/wall/");
   EXPECT_EQ(checked("typing"), "");
+}
+
+/// A block from `low` to `high`.
+std::string block_stl(const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+  TriangleMesh out;
+  for (int i = 0; i < 8; ++i)
+    out.points.emplace_back((i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z());
+  out.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return stl_text(out);
+}
+
+TEST_F(Page, MovesThePartIntoItsPlaceByEye) {
+  tests::write_wall(folder_, "served/wall/");
+  folder_.write("served/wall/part.stl", block_stl({20, 0, -2}, {28, 2, 0}));
+  folder_.write("served/wall/job.toml", tests::wall_job() + "[part]\nmesh = \"part.stl\"\n");
+  EXPECT_EQ(checked("part"), "");
+}
+
+TEST_F(Page, DrawsBlanksOfEveryKind) {
+  const std::string box = "box_mm = [[0, -0.5, -2], [8, 2, 0]]", job = tests::wall_job();
+  for (const auto& [name, stock] :
+       {std::pair{"left", "vdb = \"r/stock.vdb\""},
+        {"mesh", "mesh = \"blank.stl\""},
+        {"round", "cylinder = { base_mm = [4, 3, -2], diameter_mm = 12, height_mm = 2 }"}}) {
+    const std::string at = fmt::format("served/{}/", name);
+    tests::write_wall(folder_, at);
+    folder_.write(at + "blank.stl", block_stl({0, -0.5F, -2}, {8, 2, 0}));
+    tests::run_camber(folder_, fmt::format("predict {}job.toml -o {}r", at, at));
+    folder_.write(at + "job.toml", tests::replaced(job, box, stock));
+  }
+  EXPECT_EQ(checked("blanks"), "");
+}
+
+TEST_F(Page, DrawsTheTipOnThePartWhereRotaryAxesTurn) {
+  const std::string sample = CAMBER_SOURCE_DIR "/samples/12-five-axis/";
+  fs::create_directory(folder_ / "served/dome");
+  fs::copy_file(sample + "machine.toml", folder_ / "served/dome/machine.toml");
+  const auto posted =
+      tests::run_camber(folder_, "post '" + sample + "dome.nc' -o served/dome/p.nc --machine served/dome/machine.toml");
+  ASSERT_EQ(posted.status, 0) << posted.err;
+  folder_.write(
+      "served/dome/job.toml",
+      "program = \"p.nc\"\nmachine = \"machine.toml\"\n[tool.1]\ntype = \"ball\"\ndiameter_mm = 6.0\nflutes = "
+      "2\noverhang_mm = 30.0\n[material]\nktc_MPa = 800.0\nkrc_MPa = 300.0\n[stock]\nbox_mm = [[-12, -12, "
+      "-15], [12, 12, 0]]\n[simulation]\nvoxel_mm = 0.5\n");
+  EXPECT_EQ(checked("rotary", sample + "dome.nc"), "");
+}
+
+TEST_F(PageSlow, LaysMeasuredPointsOverTheErrorMap) {
+  tests::write_wall(folder_, "served/wall/");
+  ASSERT_EQ(tests::run_camber(folder_, "predict served/wall/job.toml -o predicted").status, 0);
+  const auto columns = tests::columns_of(file_text(folder_ / "predicted/form_error.csv"));
+  std::string points = "x_mm,y_mm,z_mm,nx,ny,nz,error_um\n";
+  for (std::size_t i = 0; i < columns.at("x_mm").size(); i += 9) {
+    const auto of = [&](const char* name) { return columns.at(name)[i]; };
+    if (of("ny") < -0.9)  // the wall, where the tool bends along the normal
+      points += fmt::format("{},{},{},{},{},{},{:.3f}\n", of("x_mm"), of("y_mm"), of("z_mm"), of("nx"), of("ny"),
+                            of("nz"), 1.2 * of("error_um"));
+  }
+  folder_.write("served/wall/points.csv", points);
+  EXPECT_EQ(checked("measured"), "");
 }
 
 TEST_F(Page, RunsAllJobsOfAShopAndShowsResultsSideBySide) {

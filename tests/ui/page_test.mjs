@@ -70,6 +70,21 @@ async function setField(page, path, value) {
   await page.waitForFunction(n => Number(document.documentElement.dataset.checked) > n, before, { timeout: 60000 });
 }
 
+const job = name => readFileSync(join(folder, name, 'job.toml'), 'utf8');
+const solids = (page, names) => page.waitForFunction(n => document.documentElement.dataset.solids === n, names, { timeout: 60000 });
+const extents = (page, name) => page.evaluate(n => { const e = window.camberScene.extents[n]; return e && [...e.low, ...e.high]; }, name);
+const near = (a, b, within) => a?.length === b.length && a.every((v, k) => Math.abs(v - b[k]) <= within);
+
+// Whether the picture has changed when the box of this label is switched off; it is switched on again.
+async function hides(page, label) {
+  const box = page.locator('#scene-bar label', { hasText: label }).locator('input[type=checkbox]').first(), shot = async () => { await painted(page); return page.locator('#scene canvas').screenshot(); };
+  const before = await shot();
+  await box.uncheck();
+  const without = await shot();
+  await box.check();
+  return !before.equals(without);
+}
+
 const CHECKS = {
   // From an empty folder and a dropped program to a downloaded compensated one.
   async whole_way(page) {
@@ -198,6 +213,125 @@ const CHECKS = {
     const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number));
     expect(Math.max(...dark) < 60, `dark is ${dark}`);
     await picture(page, 'workbench-dark.png');
+  },
+
+  // The part stands where the job says, and is moved by the pointer, by keys and by numbers.
+  async part(page) {
+    await solids(page, 'part');
+    const place = () => /\nmove_mm = \[(.*)\]/.exec(job('wall'))?.[1].split(',').map(Number);
+    const start = await extents(page, 'part');
+    expect(near(start, [20, 0, -2, 28, 2, 0], 1e-4), `the part lies at ${start}`);
+    expect(await hides(page, 'part'), 'the part is not in the picture');
+    const moved = async act => {
+      const before = await checks(page);
+      await act();
+      await page.waitForFunction(n => Number(document.documentElement.dataset.checked) > n, before, { timeout: 60000 });
+      const at = place() ?? [0, 0, 0], e = await extents(page, 'part');
+      expect(near(e, start.map((v, k) => v + at[k % 3]), 1e-3), `the job moves the part by ${at}, the picture shows it at ${e}`);
+      return at;
+    };
+    await page.locator('[data-view=top]').click();
+    await page.locator('#mover').check();
+    await painted(page);
+    const canvas = await page.locator('#scene canvas').boundingBox();
+    const { x, y, mm } = await page.evaluate(() => {
+      const { camera, controls, box, extents: { part } } = window.camberScene, mm = (camera.right - camera.left) / camera.zoom / box.clientWidth;
+      return { mm, x: box.clientWidth / 2 + ((part.low[0] + part.high[0]) / 2 - controls.target.x) / mm, y: box.clientHeight / 2 - ((part.low[1] + part.high[1]) / 2 - controls.target.y) / mm };
+    });
+    const dragged = await moved(async () => {
+      await page.mouse.move(canvas.x + x, canvas.y + y);
+      await page.mouse.down();
+      await page.mouse.move(canvas.x + x - 100, canvas.y + y + 40, { steps: 5 });
+      await page.mouse.up();
+    });
+    expect(near(dragged, [-100 * mm, -40 * mm, 0], 0.02), `100 pixels of ${mm} mm to the left and 40 down moved the part by ${dragged}`);
+    await picture(page, 'workbench-part.png');
+    await page.locator('#scene canvas').focus();
+    const stepped = await moved(async () => { for (const key of ['ArrowRight', 'Shift+ArrowUp', 'Alt+PageDown']) await page.keyboard.press(key); });
+    expect(near(stepped, [dragged[0] + 1, dragged[1] + 10, -0.1], 1e-6), `the keys moved the part from ${dragged} to ${stepped}`);
+    for (const [axis, value] of Object.entries({ X: '-20', Y: '0', Z: '0' })) {
+      await moved(() => page.locator(`[data-move=${axis}]`).fill(value));
+    }
+    expect(job('wall').includes('\nmove_mm = [-20, 0, 0]\n'), `the job has ${place()}`);
+    expect(near(await extents(page, 'part'), [0, 0, -2, 8, 2, 0], 1e-4), 'the part is not in its place');
+    await page.locator('#mover').uncheck();
+    const rest = place();
+    await page.mouse.move(canvas.x + x, canvas.y + y);
+    await page.mouse.down();
+    await page.mouse.move(canvas.x + x + 50, canvas.y + y);
+    await page.mouse.up();
+    await page.waitForTimeout(800);
+    expect(near(place(), rest, 0), 'the pointer moves the part without being asked to');
+  },
+
+  // Blanks that are no box. FOLDER/left/r/stock.vdb is what a job has left of the wall's box.
+  async blanks(page) {
+    const where = { left: [0, -0.5, -2, 8, 2, 0], mesh: [0, -0.5, -2, 8, 2, 0], round: [-2, -3, -2, 10, 9, 0] };
+    for (const [name, box] of Object.entries(where)) {
+      await page.evaluate(() => { document.documentElement.dataset.solids = ''; });
+      await page.locator(`.job[data-job="${name}/job.toml"]`).click();
+      await solids(page, 'blank');
+      const e = await extents(page, 'blank');
+      expect(near(e, box, 0.21), `the blank of ${name} lies at ${e}`);
+      expect(await hides(page, 'blank'), `the blank of ${name} is not in the picture`);
+    }
+  },
+
+  // FILE: the program that FOLDER/dome/p.nc was posted from: its X, Y and Z are the tip on the part.
+  async rotary(page) {
+    await page.waitForFunction(() => document.documentElement.dataset.checked === '1', null, { timeout: 60000 });
+    await shown(page);
+    expect(/tip on the part/.test(await page.locator('#legend').innerText()), 'it is not said that the tip is drawn');
+    const places = await page.evaluate(() => Array.from(window.camberScene.place)), wanted = [];
+    const now = { X: NaN, Y: NaN, Z: NaN };
+    for (const line of readFileSync(file, 'latin1').split('\n')) {
+      if (/G10|G54|G53/.test(line) || !/[XYZ]-?\d/.test(line)) continue;
+      for (const [, axis, value] of line.matchAll(/([XYZ])(-?[\d.]+)/g)) now[axis] = Number(value);
+      if (/G1 |^X/.test(line)) wanted.push(Object.values(now));
+    }
+    expect(wanted.length > 300, `${wanted.length} places`);
+    const farthest = Math.max(...wanted.map(w => {
+      let least = Infinity;
+      for (let i = 0; i < places.length; i += 3) least = Math.min(least, Math.hypot(places[i] - w[0], places[i + 1] - w[1], places[i + 2] - w[2]));
+      return least;
+    }));
+    expect(farthest < 0.01, `a place of the tip is ${farthest} mm from the picture's path`);
+  },
+
+  // Points of FOLDER/wall/points.csv over the error map of a compensation.
+  async measured(page) {
+    await page.waitForFunction(() => document.documentElement.dataset.checked === '1');
+    const rows = readFileSync(join(folder, 'wall/points.csv'), 'utf8').trim().split('\n').slice(1).map(l => l.split(',').map(Number));
+    await tab(page, 'run');
+    await page.locator('.runs select').first().selectOption('compensate');
+    await page.locator('[data-option=measured]').selectOption('wall/points.csv');
+    await page.locator('[data-option=keep-anyway]').check();
+    await page.click('#start');
+    await page.waitForFunction(() => document.documentElement.dataset.runs);
+    await over(page);
+    await tab(page, 'results');
+    await page.waitForSelector('iframe.report');
+    const report = page.frames().find(f => /report\.html/.test(f.url()));
+    await report.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
+    const scene = report.locator('#scene'), canvas = scene.locator('canvas');
+    await scene.scrollIntoViewIfNeeded();
+    await painted(page);
+    const { x, y, width, height } = await canvas.boundingBox(), with_points = await canvas.screenshot();
+    let said = '';
+    for (let k = 0; k < 900 && !/measured/.test(said); k++) {
+      await page.mouse.move(x + width * (k % 45 + 0.5) / 45, y + height * (Math.floor(k / 45) + 0.5) / 20);
+      await painted(page);
+      said = await report.locator('.tip').innerText();
+    }
+    const value = Number(/measured ([+\u2212-]?[\d.]+) \u00b5m/.exec(said)?.[1].replace('\u2212', '-'));
+    const at = [...said.matchAll(/[XYZ](\u2212|-)?([\d.]+)/g)].slice(0, 3).map(m => Number((m[1] ? '-' : '') + m[2]));
+    expect(rows.some(r => near(at, r.slice(0, 3), 2e-3) && Math.abs(r[6] - value) < 0.02), `no row of the file says "${said}"`);
+    expect(/predicted/.test(said), `the prediction beside it is missing: "${said}"`);
+    await picture(page, 'workbench-measured.png');
+    await page.mouse.move(5, 5);
+    await report.locator('#part-controls').getByText('Hidden').first().click();
+    await painted(page);
+    expect(!with_points.equals(await canvas.screenshot()), 'measured points are not in the picture');
   },
 
   // Several jobs: all run, two results side by side, one cancelled.

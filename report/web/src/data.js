@@ -64,12 +64,13 @@ function runOf(bytes, run) {
   return out;
 }
 
-// {scales, view, download, machine, surface, stock, runs}; runs without rows are left out.
+// {scales, view, download, machine, surface, measured, stock, runs}; runs without rows are left out.
 export async function readPage() {
   const index = JSON.parse(document.getElementById('index').textContent), bytes = await inflate(bytesOf('arrays'));
   return {
     scales: index.scales, view: index.view, download: index.download, machine: index.machine,
     surface: index.surface && surfaceOf(bytes, index.surface),
+    measured: index.measured && { place: triples(bytes, index.measured.place), error: read(bytes, index.measured.error) },
     stock: index.stock && meshOf(bytes, index.stock),
     runs: index.runs.filter(r => r.t.n > 0).map(r => runOf(bytes, r)),
   };

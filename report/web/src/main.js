@@ -70,6 +70,7 @@ class Page {
       box.append(scale.box);
     }
     if (surface) box.append(this.cutControl());
+    if (this.page.measured) box.append(choice('Measured', [['shown', 'Shown'], ['hidden', 'Hidden']], shown => this.scene.showMeasured(shown === 'shown')).box);
     if (stock) box.append(choice('Stock', [['shown', 'Shown'], ['hidden', 'Hidden']], shown => this.scene.showStock(shown === 'shown')).box);
     if (runs.length)
       box.append(menu('Path', [['', 'hidden'], ...present(runs).map(q => [q, 'by ' + QUANTITIES[q].name])], q => { this.quantity = q || null; this.update(); }).box);
@@ -174,10 +175,10 @@ class Page {
   async hover(tip, found, event) {
     tip.hidden = !found;
     if (!found) return;
-    const run = this.run(), vertex = found.vertex, at = 3 * (vertex ?? found.row);
-    const place = (vertex !== undefined ? this.page.surface : this.page.runs[run]).place;
+    const run = this.run(), { vertex, point } = found, at = 3 * (point ?? vertex ?? found.row);
+    const place = (point !== undefined ? this.page.measured : vertex !== undefined ? this.page.surface : this.page.runs[run]).place;
     const block = vertex !== undefined ? (this.page.surface.block[run] || this.page.surface.block[0])[vertex] : this.page.runs[run].block[found.row];
-    const what = vertex !== undefined ? this.errors(vertex)
+    const what = point !== undefined ? `measured ${signed(this.page.measured.error[point], 2)} \u00b5m; predicted ${this.errors(vertex)}` : vertex !== undefined ? this.errors(vertex)
       : `${QUANTITIES[this.quantity].name} ${fixed(this.page.runs[run][this.quantity][found.row], QUANTITIES[this.quantity].decimals)} ${QUANTITIES[this.quantity].unit}`;
     const text = block ? await this.line(run, block) : '';
     tip.replaceChildren(element('b', { textContent: what }),

@@ -1,7 +1,7 @@
 // The part and the path in 3-D.
 import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Matrix4, Mesh, OrthographicCamera,
-  Raycaster, Scene, ShaderMaterial, Vector2, Vector3, Vector4, WebGLRenderer,
+  Points, Raycaster, Scene, ShaderMaterial, Vector2, Vector3, Vector4, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
@@ -69,8 +69,31 @@ void main() {
   gl_FragColor = vec4(vec3(0.66, 0.69, 0.73) * light, 1.0);
 }`;
 
+// Measured points: discs in the colours of the map, ringed, and a little before the surface.
+const POINT_VERTEX = `
+attribute float error;
+uniform float size;
+uniform vec4 cut;
+varying float value, beyond;
+void main() {
+  value = error;
+  beyond = dot(position, cut.xyz) - cut.w;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  gl_Position.z -= 0.001 * gl_Position.w;
+  gl_PointSize = size;
+}`;
+const POINT_FRAGMENT = `
+uniform float limit;
+varying float value, beyond;
+${DIVERGING_GLSL}
+void main() {
+  float r = length(2.0 * gl_PointCoord - 1.0);
+  if (r > 1.0 || beyond > 0.0) discard;
+  gl_FragColor = vec4(r > 0.7 ? vec3(0.1) : diverging(0.5 + 0.5 * value / limit), 1.0);
+}`;
+
 const VIEWS = { oblique: [-0.6, -1, 1.25], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0] };
-const CLICK_PX = 4, PATH_PX = 6;
+const CLICK_PX = 4, PATH_PX = 6, POINT_PX = 11;
 // Up to this many times the size of what is judged, the stock decides how large the picture is.
 const WHOLE_STOCK = 2.5;
 
@@ -106,6 +129,7 @@ export class PartScene {
     this.shown = surface ? [surface.place] : cutting.some(c => c.length) ? cutting : runs.map(r => r.place);
     Object.assign(this, bounds(this.shown), { deep: bounds(this.shown).radius });
     if (surface) this.part.add(this.surface = this.meshOf(surface));
+    if (page.measured) this.addMeasured(page.measured);
     if (stock) this.addStock(stock);
     if (page.machine) this.part.add((this.tool = new ToolBody(page.machine.tools)).body);
     this.renderer.domElement.tabIndex = 0;
@@ -136,6 +160,22 @@ export class PartScene {
       uniforms: { mode: { value: 0 }, limit: { value: this.page.scales[0] }, cut: this.cut },
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2,  // the path lies on it
     }));
+  }
+
+  addMeasured({ place, error }) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(place, 3));
+    geometry.setAttribute('error', new BufferAttribute(error, 1));
+    this.measured = new Points(geometry, new ShaderMaterial({
+      vertexShader: POINT_VERTEX, fragmentShader: POINT_FRAGMENT,
+      uniforms: { limit: { value: this.page.scales[0] }, size: { value: POINT_PX * this.renderer.getPixelRatio() }, cut: this.cut },
+    }));
+    this.part.add(this.measured);
+  }
+
+  showMeasured(shown) {
+    this.measured.visible = shown;
+    this.render();
   }
 
   addStock(stock) {
@@ -235,6 +275,7 @@ export class PartScene {
     const { uniforms } = this.surface.material;
     uniforms.mode.value = MODES.indexOf(mode);
     uniforms.limit.value = limit;
+    if (this.measured) this.measured.material.uniforms.limit.value = limit;
     this.render();
   }
 
@@ -289,6 +330,8 @@ export class PartScene {
       const row = this.nearestRow(x, y, area);
       if (row >= 0) return { row };
     }
+    const point = this.measured?.visible ? this.nearestPoint(x, y, area) : -1;
+    if (point >= 0) return { point, vertex: this.vertexBeside(this.page.measured.place, 3 * point) };
     const vertex = this.page.surface ? this.nearestVertex(x / area.width * 2 - 1, 1 - y / area.height * 2) : -1;
     return vertex >= 0 ? { vertex } : null;
   }
@@ -301,6 +344,29 @@ export class PartScene {
       const p = this.projected(place, 3 * i);
       const d = ((p.x + 1) / 2 * area.width - x) ** 2 + ((1 - p.y) / 2 * area.height - y) ** 2;
       if (d < least) { least = d; best = i; }
+    }
+    return best;
+  }
+
+  // Of the measured points under the pointer the one nearest to the eye.
+  nearestPoint(x, y, area) {
+    const { place } = this.page.measured;
+    let best = -1, least = Infinity;
+    for (let i = 0; i < place.length; i += 3) {
+      const p = this.projected(place, i);
+      if (this.isCutAway(place[i], place[i + 1], place[i + 2]) || p.z >= least) continue;
+      if (Math.hypot((p.x + 1) / 2 * area.width - x, (1 - p.y) / 2 * area.height - y) < POINT_PX / 2 + 1) { least = p.z; best = i / 3; }
+    }
+    return best;
+  }
+
+  // The vertex of the surface beside a place.
+  vertexBeside(places, at) {
+    const { place } = this.page.surface;
+    let best = 0, least = Infinity;
+    for (let i = 0; i < place.length; i += 3) {
+      const d = (place[i] - places[at]) ** 2 + (place[i + 1] - places[at + 1]) ** 2 + (place[i + 2] - places[at + 2]) ** 2;
+      if (d < least) { least = d; best = i / 3; }
     }
     return best;
   }

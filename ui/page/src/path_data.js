@@ -4,7 +4,7 @@ const TYPES = { f4: Float32Array, u4: Uint32Array, u2: Uint16Array, u1: Uint8Arr
 export function readPath(buffer) {
   const bytes = new Uint8Array(buffer), end = bytes.indexOf(10);
   const head = JSON.parse(new TextDecoder().decode(bytes.subarray(0, end)));
-  const out = { count: head.points, origin: head.origin_mm, chord_mm: head.chord_mm, thinned: head.thinned };
+  const out = { count: head.points, origin: head.origin_mm, chord_mm: head.chord_mm, thinned: head.thinned, inPart: head.in_part };
   let at = end + 1;
   for (const [name, type] of head.arrays) {
     out[name] = new TYPES[type](buffer, at, head.points);

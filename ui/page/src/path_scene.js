@@ -1,7 +1,7 @@
 // The path in three dimensions: one buffer of points, one of pairs; colours say kind, tool, feed or message.
 import {
-  Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, GLSL3, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, OrthographicCamera,
-  RawShaderMaterial, Scene, Vector3, WebGLRenderer, AmbientLight, DirectionalLight, Group,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, EdgesGeometry, GLSL3, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, OrthographicCamera,
+  Plane, RawShaderMaterial, Raycaster, Scene, Vector2, Vector3, WebGLRenderer, AmbientLight, DirectionalLight, Group,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { SEQUENTIAL, colourAt } from '../../../report/web/src/colours.js';
@@ -27,6 +27,8 @@ const VIEWS = { oblique: [-0.6, -1, 1.1], top: [0, -1e-4, 1], front: [0, -1, 0],
 export const VIEW_NAMES = Object.keys(VIEWS);
 // Ways drawn while the picture turns; the rest follows when it rests.
 const MOVING = 120000, REST_MS = 160, REACH_PX = 8, CLICK_PX = 4;
+const EDGES = 60000;  // triangles whose edges are looked for
+const PLACE_mm = 0.01;  // a part that is dragged stands at whole multiples of it
 export const TOOL_COLOURS = [[31, 119, 180], [214, 110, 20], [44, 140, 60], [190, 50, 60], [130, 95, 180], [130, 85, 70], [210, 110, 180], [110, 115, 30], [20, 160, 175]];
 const CUT = [40, 118, 190], FAST = [217, 98, 43], QUIET = [140, 150, 162], WARNED = [217, 144, 43], WRONG = [200, 45, 40];
 
@@ -70,9 +72,9 @@ export class PathScene {
     this.controls.addEventListener('change', () => this.moving());
     this.listen(canvas);
     new ResizeObserver(() => this.resize()).observe(box);
-    this.middle = [0, 0, 0];
-    this.radius = 1;
-    this.look('oblique');
+    this.view = 'oblique';
+    this.extents = {};
+    this.fit();
   }
 
   setBackground(colour) {
@@ -80,7 +82,8 @@ export class PathScene {
     this.render();
   }
 
-  setPath(path) {
+  // same: the path of the program that is shown; the eye stays where it is.
+  setPath(path, same) {
     if (this.lines) { this.things.remove(this.lines, this.coarse); this.lines.geometry.dispose(); this.coarse.geometry.dispose(); }
     this.path = path;
     this.mark(null);
@@ -93,9 +96,6 @@ export class PathScene {
         low[k] = Math.min(low[k], v + path.origin[k]);
         high[k] = Math.max(high[k], v + path.origin[k]);
       });
-    this.middle = low.map((v, k) => Number.isFinite(v) ? (v + high[k]) / 2 : 0);
-    this.radius = Math.hypot(...low.map((v, k) => (high[k] - v) / 2)) || 1;
-    if (!Number.isFinite(this.radius)) this.radius = 1;
     this.positions = new BufferAttribute(place, 3);
     this.colours = new BufferAttribute(new Uint8Array(3 * path.count), 3, true);
     const material = new RawShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, glslVersion: GLSL3 });
@@ -113,6 +113,19 @@ export class PathScene {
     this.things.add(this.lines);
     if (this.coarse !== this.lines) this.things.add(this.coarse);
     this.coarse.visible = this.coarse === this.lines;
+    this.extents.path = { low, high };
+    if (same) this.render();
+    else this.fit();
+  }
+
+  // Path, blank and part in the picture.
+  fit() {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (const e of Object.values(this.extents))
+      if (e && Number.isFinite(e.low[0])) for (let k = 0; k < 3; k++) { low[k] = Math.min(low[k], e.low[k]); high[k] = Math.max(high[k], e.high[k]); }
+    this.middle = low.map((v, k) => Number.isFinite(v) ? (v + high[k]) / 2 : 0);
+    this.radius = Math.hypot(...low.map((v, k) => (high[k] - v) / 2)) || 1;
+    if (!Number.isFinite(this.radius)) this.radius = 1;
     this.look(this.view);
   }
 
@@ -154,8 +167,10 @@ export class PathScene {
 
   // [[x, y, z], [x, y, z]] or null.
   setBox(corners) {
+    if (JSON.stringify(corners) === JSON.stringify(this.corners)) return;
+    this.corners = corners;
     if (this.boxLines) this.things.remove(this.boxLines);
-    this.boxLines = null;
+    this.boxLines = this.extents.box = null;
     if (corners) {
       const [a, b] = corners, at = [];
       for (let axis = 0; axis < 3; axis++)
@@ -166,26 +181,93 @@ export class PathScene {
       const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(at), 3));
       this.boxLines = new LineSegments(geometry, new LineBasicMaterial({ color: new Color('#7a8794').convertLinearToSRGB() }));
       this.things.add(this.boxLines);
+      this.extents.box = { low: a.map((v, k) => Math.min(v, b[k])), high: a.map((v, k) => Math.max(v, b[k])) };
     }
+    this.fit();
+  }
+
+  // Geometries or null. A part that is shown with the move `at` is moved from there by movePart().
+  setPart(geometry, at = [0, 0, 0]) {
+    this.part = this.solid('part', this.part, geometry, { color: new Color('#b9c3cf').convertLinearToSRGB(), polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2 });
+    this.partAt = at;
+    this.fit();
+  }
+  setBlank(geometry) {
+    this.blank = this.solid('blank', this.blank, geometry, { color: new Color('#8b94a0').convertLinearToSRGB(), transparent: true, opacity: 0.28, depthWrite: false });
+    this.fit();
+  }
+  solid(name, old, geometry, material) {
+    if (old) { this.things.remove(old); old.geometry.dispose(); }
+    this.extents[name] = null;
+    if (!geometry) return null;
+    geometry.computeVertexNormals();
+    geometry.computeBoundingBox();
+    this.extents[name] = { low: geometry.boundingBox.min.toArray(), high: geometry.boundingBox.max.toArray() };
+    const out = new Mesh(geometry, new MeshLambertMaterial({ side: DoubleSide, ...material }));
+    if (geometry.attributes.position.count < 3 * EDGES)
+      out.add(new LineSegments(new EdgesGeometry(geometry, 25), new LineBasicMaterial({ color: new Color('#6d7886').convertLinearToSRGB() })));
+    this.things.add(out);
+    return out;
+  }
+
+  movePart(to) {
+    if (!this.part) return;
+    this.part.position.set(...to.map((v, k) => v - this.partAt[k]));
+    const { min, max } = this.part.geometry.boundingBox;
+    this.extents.part = { low: min.clone().add(this.part.position).toArray(), high: max.clone().add(this.part.position).toArray() };
+    this.render();
+  }
+  placeOfPart() { return this.part.position.toArray().map((v, k) => v + this.partAt[k]); }
+
+  showSolids(shown) {
+    this.shown = shown;
+    for (const [name, things] of [['part', [this.part]], ['blank', [this.blank, this.boxLines]]]) for (const t of things) if (t) t.visible = shown[name];
     this.render();
   }
 
-  // A geometry of triangles, or null.
-  setPart(geometry) {
-    if (this.partMesh) this.things.remove(this.partMesh);
-    this.partMesh = null;
-    if (geometry) {
-      geometry.computeVertexNormals();
-      this.partMesh = new Mesh(geometry, new MeshLambertMaterial({ color: new Color('#b9c3cf').convertLinearToSRGB(), side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2 }));
-      this.things.add(this.partMesh);
-    }
-    this.render();
+  // While the part is moved: the pointer drags it across the axis that points most to the eye; arrow keys and Page Up and
+  // Down step along the axes that point to the right, upwards and to the eye. moved(place, done) says where it stands.
+  setMoving(moved) { this.moved = moved; }
+  axisAlong(direction) {
+    const v = direction.toArray(), axis = [0, 1, 2].reduce((a, b) => Math.abs(v[b]) > Math.abs(v[a]) ? b : a, 0);
+    return { axis, sign: Math.sign(v[axis]) };
+  }
+  ray(e) {
+    const out = new Raycaster();
+    out.setFromCamera(new Vector2(2 * e.offsetX / this.box.clientWidth - 1, 1 - 2 * e.offsetY / this.box.clientHeight), this.camera);
+    return out;
+  }
+  grab(e) {
+    if (!this.moved || !this.part?.visible || e.button !== 0) return null;
+    this.part.updateMatrixWorld();
+    const hit = this.ray(e).intersectObject(this.part, false)[0];
+    if (!hit) return null;
+    const { axis } = this.axisAlong(this.camera.getWorldDirection(new Vector3())), normal = new Vector3().setComponent(axis, 1);
+    return { from: hit.point, place: this.placeOfPart(), plane: new Plane(normal, -hit.point.getComponent(axis)) };
+  }
+  drag(e, { from, place, plane }, done) {
+    const to = this.ray(e).ray.intersectPlane(plane, new Vector3());
+    if (!to) return;
+    const now = place.map((v, k) => Math.round((v + to.getComponent(k) - from.getComponent(k)) / PLACE_mm) * PLACE_mm);
+    this.movePart(now);
+    this.moved(now, done);
+  }
+  step(key, mm) {
+    const along = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 1], ArrowDown: [1, -1], PageUp: [2, 1], PageDown: [2, -1] }[key];
+    if (!along || !this.moved || !this.part) return false;
+    const x = new Vector3(), y = new Vector3(), z = new Vector3(), place = this.placeOfPart();
+    this.camera.matrixWorld.extractBasis(x, y, z);
+    const eye = this.axisAlong(z), right = this.axisAlong(x), used = [eye.axis, right.axis], up = 3 - eye.axis - right.axis;
+    const { axis, sign } = along[0] === 2 ? eye : along[0] === 0 ? right : { axis: up, sign: Math.sign(y.getComponent(up)) || 1 };
+    if (used[0] === used[1]) return false;
+    place[axis] += sign * along[1] * mm;
+    this.movePart(place);
+    this.moved(place, true);
+    return true;
   }
 
   look(name = 'oblique') {
     this.view = name;
-    const box = new Box3();
-    box.expandByPoint(new Vector3(...this.middle.map(v => v - this.radius)));
     const direction = VIEWS[name], size = Math.hypot(...direction), far = 40 * this.radius;
     this.controls.target.set(...this.middle);
     this.camera.position.set(...this.middle.map((v, k) => v + direction[k] / size * far / 2));
@@ -219,9 +301,18 @@ export class PathScene {
   }
 
   listen(canvas) {
-    let down = null, asked = null;
+    let down = null, asked = null, held = null;
+    // Before the controls hear of it.
+    this.box.addEventListener('pointerdown', e => { if (e.target === canvas && (held = this.grab(e))) { this.controls.enabled = false; canvas.setPointerCapture(e.pointerId); } }, true);
+    canvas.addEventListener('keydown', e => { if (this.step(e.key, e.shiftKey ? 10 : e.altKey ? 0.1 : 1)) { e.preventDefault(); e.stopPropagation(); } });
     canvas.addEventListener('pointerdown', e => { down = [e.clientX, e.clientY]; this.tip.hidden = true; });
     canvas.addEventListener('pointerup', e => {
+      if (held) {
+        this.drag(e, held, true);
+        held = down = null;
+        this.controls.enabled = true;
+        return;
+      }
       if (down && Math.hypot(e.clientX - down[0], e.clientY - down[1]) < CLICK_PX) {
         const i = this.nearest(e.offsetX, e.offsetY);
         if (i >= 0) { this.mark(i); this.picked(i); }
@@ -229,12 +320,13 @@ export class PathScene {
       down = null;
     });
     canvas.addEventListener('pointermove', e => {
+      if (held) return this.drag(e, held, false);
       if (down || !this.path || this.path.count > 3e5) return;
       if (!asked) requestAnimationFrame(() => { this.hover(asked); asked = null; });
       asked = { x: e.offsetX, y: e.offsetY };
     });
     canvas.addEventListener('pointerleave', () => { this.tip.hidden = true; });
-    canvas.addEventListener('dblclick', () => this.look(this.view));
+    canvas.addEventListener('dblclick', () => this.fit());
   }
 
   hover({ x, y }) {

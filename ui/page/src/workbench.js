@@ -9,7 +9,7 @@ import { Comparison, Results } from './results.js';
 import { Runs, stateText } from './runs.js';
 import { Setup } from './setup.js';
 import { LANGUAGES, currentLanguage, setLanguage, text } from './texts.js';
-import { isInch, length, setInch, speed } from './units.js';
+import { givenValue, isInch, length, setInch, shownValue, speed, unitOf } from './units.js';
 import './workbench.css';
 
 // What the user has chosen stays in the browser; it changes no result.
@@ -101,6 +101,7 @@ class Workbench {
       this.toolChoice = h('span', {}),
       h('label', {}, this.rapids = h('input', { type: 'checkbox', checked: true, onchange: () => this.showKinds() }), ' ', text('rapids')),
       h('span', { className: 'choice' }, VIEW_NAMES.map(v => h('button', { type: 'button', data: { view: v }, onclick: () => this.scene?.look(v) }, text('view_' + v)))),
+      this.moveControls(),
       h('button', { type: 'button', onclick: () => this.savePicture() }, text('save_picture')));
     this.tab('path');
   }
@@ -197,7 +198,7 @@ class Workbench {
     this.runs.show(job);
     this.results.show(job);
     if (document.activeElement !== this.textArea) this.textArea.value = job.text;
-    this.showStockAndPart();
+    this.showSettings();
   }
 
   // A setting was changed: the commands' own check says what they think of it.
@@ -227,11 +228,15 @@ class Workbench {
   }
 
   async check(what) {
-    const asked = this.asked = Symbol('check');
+    const asked = this.asked = Symbol('check'), { job } = this, move = this.numbers('part', 'move_mm') ?? [0, 0, 0];
     this.said(text('checking'));
     let checked;
     try { checked = await get('api/check', what); } catch (e) { return this.said(e.message, true); }
     if (asked !== this.asked || checked.stopped) return;
+    if (this.scene && job && this.job?.job === job.job) {
+      if (checked.path_in_part) await this.showPath(checked.path, this.scene.path?.inPart);
+      await this.showMeshes(checked, job, move);
+    }
     this.showMessages(checked);
     this.setup.setSheet(checked.sheet);
   }
@@ -257,14 +262,14 @@ class Workbench {
     document.documentElement.dataset.checked = String(Number(document.documentElement.dataset.checked ?? 0) + 1);
   }
 
-  async showPath(name) {
+  async showPath(name, same) {
     const path = readPath(await fileBytes(name));
-    this.scene.setPath(path);
+    this.scene.setPath(path, same);
     const tools = [...new Set(path.tool)].sort((a, b) => a - b);
     this.toolNumber = '';
     clear(this.toolChoice, tools.length > 1 ? select(text('tool'), [['', text('tool_all')], ...tools.map(t => [t, 'T' + t])], '', t => { this.toolNumber = t; this.showKinds(); }) : null);
     this.colour();
-    this.showStockAndPart();
+    this.showSettings();
   }
 
   savePicture() {
@@ -288,7 +293,7 @@ class Workbench {
       feed: () => [h('span', {}, speed(0)), h('i', { className: 'ramp' }), h('span', {}, speed(most))],
       message: () => [key(text('messages'), 'rgb(200,45,40)')],
     };
-    clear(this.legend, legends[this.by](), h('span', { className: 'note' }, `${path.count.toLocaleString(currentLanguage())} ${text('points')}. `, path.thinned ? text('thinned', length(path.chord_mm)) : ''));
+    clear(this.legend, legends[this.by](), h('span', { className: 'note' }, `${path.count.toLocaleString(currentLanguage())} ${text('points')}. `, path.thinned ? text('thinned', length(path.chord_mm)) : '', path.inPart ? ' ' + text('path_in_part') : ''));
   }
 
   describe(i) {
@@ -297,16 +302,69 @@ class Workbench {
     return `${text('line')} ${path.line[i]} · ${at} · T${path.tool[i]}${Number.isFinite(feed) ? ' · ' + speed(feed) : ''}`;
   }
 
-  async showStockAndPart() {
+  // The value of a setting; null: it is not set, or no list of numbers.
+  numbers(table, key) {
+    const value = this.job.fields.find(f => f.table === table && f.key === key && !f.is_default)?.value;
+    try { return JSON.parse(value ?? 'null'); } catch { return null; /* the check says so */ }
+  }
+
+  showSettings() {
     if (!this.scene || !this.job) return;
-    const field = (table, key) => this.job.fields.find(f => f.table === table && f.key === key && !f.is_default)?.value;
-    let corners = null;
-    try { corners = JSON.parse(field('stock', 'box_mm') ?? 'null'); } catch { /* the check says so */ }
+    const corners = this.numbers('stock', 'box_mm');
     this.scene.setBox(Array.isArray(corners) && corners.length === 2 ? corners : null);
-    const part = field('part', 'mesh')?.slice(1, -1), stl = part && /\.stl$/i.test(part) ? folderName(this.job.job) + part : '';
-    if (stl === this.partShown) return;
-    this.partShown = stl;
-    try { this.scene.setPart(stl ? new STLLoader().parse(await fileBytes(stl)) : null); } catch (e) { this.said(e.message, true); }
+    this.placePart(this.numbers('part', 'move_mm') ?? [0, 0, 0]);
+    this.showSolids();
+  }
+
+  showSolids() { this.scene?.showSolids({ part: this.partShown.checked, blank: this.blankShown.checked }); }
+
+  // Part and blank as the check has read them; move: of the job that was checked.
+  async showMeshes(checked, job, move) {
+    const read = async name => name ? new STLLoader().parse(await fileBytes(name)) : null;
+    const settings = table => JSON.stringify([job.job, job.fields.filter(f => f.table === table && f.key !== 'move_mm' && !f.is_default).map(f => [f.key, f.value])]);
+    for (const name of ['part', 'blank']) {
+      const made = settings(name === 'part' ? 'part' : 'stock') + Boolean(checked[name]);
+      if (this.meshes?.[name] === made) continue;
+      this.meshes = { ...this.meshes, [name]: made };
+      try {
+        const geometry = await read(checked[name]);
+        if (job.job !== this.job?.job) return;
+        if (name === 'part') this.scene.setPart(geometry, move);
+        else this.scene.setBlank(geometry);
+      } catch (e) { this.said(e.message, true); }
+    }
+    this.moveBox.hidden = !this.scene.part;
+    this.showSettings();
+    document.documentElement.dataset.solids = ['part', 'blank'].filter(n => this.scene[n]).join(' ');
+  }
+
+  // Where the part stands, in fields and in the picture.
+  placePart(place) {
+    this.place = place;
+    this.scene.movePart(place);
+    this.placeInputs.forEach((input, k) => { if (document.activeElement !== input) input.value = shownValue('move_mm', String(+place[k].toFixed(3))); });
+  }
+
+  // Into the job, once it stands still.
+  partMoved(place, done) {
+    this.placePart(place);
+    clearTimeout(this.moving);
+    if (done) this.moving = setTimeout(() => this.setup.edit(['set', 'part', 'move_mm', `[${place.map(v => +v.toFixed(6)).join(', ')}]`]), 400);
+  }
+
+  moveControls() {
+    this.placeInputs = [0, 1, 2].map(k => h('input', {
+      size: 7, 'aria-label': `${text('move_part')} ${'XYZ'[k]}`, data: { move: 'XYZ'[k] },
+      oninput: e => {
+        const value = Number(givenValue('move_mm', e.target.value));
+        if (e.target.value.trim() && Number.isFinite(value)) this.partMoved(this.place.map((v, a) => a === k ? value : v), true);
+      },
+    }));
+    this.mover = h('input', { type: 'checkbox', id: 'mover', onchange: () => this.scene.setMoving(this.mover.checked ? (place, done) => this.partMoved(place, done) : null) });
+    this.moveBox = h('span', { className: 'choice move', hidden: true, title: text('move_part_help') },
+      h('label', {}, this.mover, ' ', text('move_part')), this.placeInputs.map((input, k) => h('label', {}, 'XYZ'[k], ' ', input)), unitOf('move_mm'));
+    const box = checked => h('input', { type: 'checkbox', checked, onchange: () => this.showSolids() });
+    return [h('label', {}, this.partShown = box(true), ' ', text('part')), h('label', {}, this.blankShown = box(true), ' ', text('stock_box')), this.moveBox];
   }
 
   goTo(line) {
@@ -352,7 +410,7 @@ class Workbench {
   key(e) {
     if (/^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName) || e.ctrlKey || e.metaKey || e.altKey || !this.job) return;
     if (TABS[Number(e.key) - 1]) return this.tab(TABS[Number(e.key) - 1]);
-    if (e.key === 'f') this.scene?.look(this.scene.view);
+    if (e.key === 'f') this.scene?.fit();
     if (e.key === 't') this.scene?.look('top');
     if (e.key === '/') {
       e.preventDefault();
