@@ -31,14 +31,15 @@ namespace {
 namespace fs = std::filesystem;
 using compensate::CompensationResult;
 
-struct Measured {
+struct MeasuredSurface {
   std::vector<compensate::MeasuredPoint> points{};
   std::optional<compensate::MeasuredFit> fit{};
 };
 
 /// The job as it was measured.
 machine::Job as_measured(const machine::Job& job, const CompensateOptions& request, Diagnostics& diagnostics,
-                         const simulate::Progress& progress, const simulate::Predictor& predictor, Measured& measured) {
+                         const simulate::Progress& progress, const simulate::Predictor& predictor,
+                         MeasuredSurface& measured) {
   if (request.measured.empty()) return job;
   auto& [points, fit] = measured;
   points = compensate::read_measured(request.measured);
@@ -94,7 +95,7 @@ CompensatedJob compensate_job(const machine::Job& given, const CompensateOptions
                               const simulate::Progress& progress, const simulate::Predictor& predictor,
                               Diagnostics& diagnostics) {
   compensate::CompensateOptions options = loop_options(request, progress, predictor);
-  Measured measured;
+  MeasuredSurface measured;
   CompensatedJob out{as_measured(with_levers(given, request.levers, diagnostics), request, diagnostics,
                                  options.progress, predictor, measured),
                      {}};
