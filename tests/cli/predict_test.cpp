@@ -357,8 +357,8 @@ TEST(Predict, WritesOfThePartsMoveWhatItHasRead) {
   EXPECT_NE(run.out.find("\nmove_mm = [1, -2.5, 0]\n"), std::string::npos) << run.out << run.err;
   folder.write("job.toml", job + "[part]\nmesh = \"part.stl\"\nmove_mm = [1, -2.5]\n");
   EXPECT_EQ(run_camber(folder, "predict job.toml -o result").err,
-            "job.toml:18:11: error: move_mm has 2 numbers; [x, y, z], by which the mesh is moved, was expected "
-            "[value-type]\n    move_mm = [1, -2.5]\n              ^\n");
+            "job.toml:17:11: error: move_mm has 2 numbers; [x, y, z], by which the mesh is moved, was expected "
+            "[value-count]\n    move_mm = [1, -2.5]\n              ^\n");
 }
 
 }  // namespace

@@ -71,13 +71,13 @@ double volume_mm3(const TriangleMesh& mesh) {
 
 TEST(StockOfAJob, IsWrittenAsAMeshForPictures) {
   const TempFolder folder;
-  const std::string cylinder = "cylinder = { base_mm = [1, 2, -5], diameter_mm = 12, height_mm = 5 }";
+  const std::string cylinder = "cylinder = { base_mm = [5, 2, -5], diameter_mm = 12, height_mm = 5 }";
   write_job(folder, kSlot, kFlat, cylinder);
   ASSERT_EQ(run_camber(folder, "check --job job.toml --meshes c").status, 0);
   const TriangleMesh round = read_stl(folder / "c-blank.stl");
   EXPECT_TRUE(round.closed());
   EXPECT_NEAR(volume_mm3(round) / (kPi * 36 * 5), 1, 0.01);
-  for (const auto& p : round.points) EXPECT_LT(std::hypot(p.x() - 1, p.y() - 2), 6.001);
+  for (const auto& p : round.points) EXPECT_LT(std::hypot(p.x() - 5, p.y() - 2), 6.001);
 
   write_job(folder, kSlot, kFlat, "box_mm = [[0, -5, -5], [8, 5, 0]]");
   ASSERT_EQ(run_camber(folder, "predict job.toml -o r").status, 0);

@@ -158,7 +158,7 @@ export class Setup {
     const choose = h('input', { type: 'file', hidden: true, onchange: () => this.upload(choose.files[0]) });
     const meshes = this.job.files.filter(f => /\.(stl|step|stp)$/i.test(f));
     const libraries = this.job.files.filter(f => /\.(json|tools|csv|hsmlib|fctl|vtdb|tbl)$/i.test(f));
-    return h('section', { className: 'card' }, h('h2', {}, text('files')), h('ul', {}, this.job.files.map(f => h('li', {}, h('a', { href: fileAddress(folderName(this.job.job) + f, true) }, f)))),
+    return this.filesBox = h('section', { className: 'card' }, h('h2', {}, text('files')), h('ul', {}, this.job.files.map(f => h('li', {}, h('a', { href: fileAddress(folderName(this.job.job) + f, true) }, f)))),
       h('p', {}, choose, h('button', { type: 'button', onclick: () => choose.click() }, text('upload_file')), ' ', h('span', { className: 'note' }, text('upload_help'))),
       meshes.length ? select(text('part'), [['', '–'], ...meshes.map(f => [f, f])], plain(this.field('part', 'mesh')?.value ?? ''), f => f ? this.edit(['set', 'part', 'mesh', quoted(f)]) : this.edit(['remove', 'part', 'mesh'])) : null,
       h('p', {}, this.library = select(text('tool_library'), [['', text('from_program')], ...libraries.map(f => [f, f])], '', () => {}), ' ',

@@ -148,7 +148,7 @@ class Workbench {
       const { state, last } = this.stateOf(job), name = baseName(job.job) === 'job.toml' && folderName(job.job) ? folderName(job.job).slice(0, -1) : job.job;
       return h('button', { type: 'button', className: 'job', data: { job: job.job, state }, 'aria-current': String(job.job === this.job?.job), onclick: () => this.openJob(job.job) },
         h('b', {}, name), h('span', { className: `state ${state}` }, stateText(state)), h('span', { className: 'note figures', title: `${text('error_rms')}, ${text('machine_time')}` }, this.figuresOf(job)),
-        last?.ended ? h('span', { className: 'note' }, new Date(1000 * last.ended).toLocaleString(currentLanguage())) : null);
+        last?.ended ? h('span', { className: 'note' }, new Date(1000 * last.ended).toLocaleString(navigator.languages.find(l => l.startsWith(currentLanguage())) ?? currentLanguage())) : null);
     }));
   }
 
@@ -163,6 +163,14 @@ class Workbench {
       await this.openProgram(made.program);
       this.said(made.messages.map(m => m.message).join('; '), true);
     } catch (e) { this.said(e.message, true); }
+  }
+
+  // A mesh, a library or a trace belongs to the job that is open; all else is a program.
+  async dropped(file) {
+    if (!this.job || !/\.(stl|step|stp|csv|json|toml|tools|xml)$/i.test(file?.name ?? '')) return this.begin(file);
+    await this.setup.upload(file);
+    this.tab('setup');
+    this.setup.filesBox.scrollIntoView();
   }
 
   // A program that no job could be made of: its lines and its messages.
@@ -403,7 +411,7 @@ class Workbench {
     const over = on => document.body.classList.toggle('dragged', on);
     addEventListener('dragover', e => { e.preventDefault(); over(true); });
     addEventListener('dragleave', e => { if (!e.relatedTarget) over(false); });
-    addEventListener('drop', e => { e.preventDefault(); over(false); this.begin(e.dataTransfer.files[0]); });
+    addEventListener('drop', e => { e.preventDefault(); over(false); this.dropped(e.dataTransfer.files[0]); });
     addEventListener('keydown', e => this.key(e));
   }
 
