@@ -157,7 +157,6 @@ TEST_F(SparseLog, TellsAccelerationsOfAxesThatLagByDifferentTimes) {
     const double acceleration = machine_.axis[i].acceleration_mm_per_s2;
     EXPECT_NEAR(fit.machine.axis[i].acceleration_mm_per_s2, acceleration, 0.08 * acceleration) << i;
   }
-  EXPECT_LT(fit.logged_held_out.mean, 1.0);
   // No block is short enough to show a longer one.
   EXPECT_LE(fit.machine.control.block_time_s, 0.001);
 }
