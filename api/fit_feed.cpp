@@ -32,7 +32,18 @@ struct FeedRuns {
   bool any_lines() const {
     return std::ranges::any_of(servo, [](const calib::FeedRun& run) { return !run.trace.line.empty(); });
   }
+
+  /// Timed pieces of runs.
+  std::size_t pieces() const {
+    std::size_t count = 0;
+    for (const calib::StretchRun& run : stretches)
+      count += static_cast<std::size_t>(
+          std::ranges::count_if(run.timed, [](const auto& t) { return t.stretch.begins_in_motion(); }));
+    return count;
+  }
 };
+
+constexpr std::size_t kManyPieces = 40;  // tell the limits of each axis
 
 /// Kind of a trace file, by its content.
 enum class TraceKind { servo, machine_log, stretch_table };
@@ -51,8 +62,8 @@ calib::StretchRun& stretch_run(FeedRuns& runs, const std::string& name, const nc
   return runs.stretches.back();
 }
 
-/// Samples of a position log in a piece whose ends are known to a fraction of one.
-constexpr double kPieceSamples = 30;
+constexpr double kLogPieceSamples = 30;  // of a position log in a piece whose ends are known to a fraction of one
+constexpr double kPieceS = 0.4, kPieceSamples = 0.8;  // of a trace whose samples are too few to show ramps
 
 /// By the lines that a log names; where it names none, or too few, by its positions.
 std::vector<calib::TimedStretch> log_times(const calib::MachineLog& log, const nc::Interpretation& program) {
@@ -64,7 +75,9 @@ std::vector<calib::TimedStretch> log_times(const calib::MachineLog& log, const n
     fail_on_file(log.path,
                  "the positions do not follow the path of the program; a log of this program was expected, in mm",
                  "trace-program");
-  return calib::placed_stretches(trace, program, *placed, kPieceSamples * trace.period_s,
+  // Events of the axes come one by one, so that a place is known to a fraction of their distance.
+  const calib::PieceOptions pieces{.piece_s = kLogPieceSamples * trace.period_s, .end_sigma_s = trace.period_s / 4};
+  return calib::placed_stretches(trace, program, *placed, pieces,
                                  [&](double from_s, double to_s) { return calib::steady_override(log, from_s, to_s); });
 }
 
@@ -116,11 +129,12 @@ void add_trace(FeedRuns& runs, const std::string& name, nc::Interpretation moves
   const calib::FeedRun& run = runs.servo.back();
   calib::check_trace(run, start, diagnostics);
   if (!placed || !sparse) return;
-  const auto timed = calib::placed_stretches(run.trace, run.program, *placed, kPieceSamples * run.trace.period_s);
+  const auto timed = calib::placed_stretches(run.trace, run.program, *placed,
+                                             {.piece_s = std::max(kPieceS, kPieceSamples * run.trace.period_s)});
   if (timed.empty())
     fail_on_file(run.trace.path,
-                 fmt::format("holds no piece of feed motion of {:.3g} s, which samples {:.3g} s apart need",
-                             kPieceSamples * run.trace.period_s, run.trace.period_s),
+                 fmt::format("holds no two samples in motion within one run of feed moves; they are {:.3g} s apart",
+                             run.trace.period_s),
                  "log-stretches");
   calib::StretchRun& stretches = stretch_run(runs, name, run.program);
   stretches.timed.insert(stretches.timed.end(), timed.begin(), timed.end());
@@ -151,6 +165,7 @@ FeedRuns read_runs(const std::vector<FeedTrace>& traces, const std::string& colu
 /// Drives come from the servo traces without lines, where some are given beside times of stretches.
 report::FeedFit fit_runs(const FeedRuns& runs, const machine::Machine& start, const calib::FitFeedOptions& options) {
   if (runs.stretches.empty() || runs.any_lines()) return calib::fit_feed(runs.servo, runs.stretches, start, options);
+  if (runs.pieces() >= kManyPieces) return calib::fit_feed(runs.servo, runs.stretches, start, options);
   calib::StretchFit fit = calib::fit_stretches(runs.stretches, start, {});
   std::vector<const calib::ServoTrace*> traces;
   for (const calib::FeedRun& run : runs.servo) traces.push_back(&run.trace);

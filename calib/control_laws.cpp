@@ -109,7 +109,7 @@ bool times_contradict_ramps(const std::vector<TimedLines>& data, const LimitFit&
 }
 
 LimitFit refit(const std::vector<TimedLines>& data, const Machine& machine, const LimitFit& from, int max_iterations) {
-  std::vector<LimitParameter> parameters = limit_parameters(machine, any_logged(data));
+  std::vector<LimitParameter> parameters = limit_parameters(machine, any_logged(data), any_lags(data));
   for (LimitParameter& p : parameters) {
     const auto same = std::ranges::find(from.parameters, p.name, &LimitParameter::name);
     const double start = same != from.parameters.end() ? same->fitted.value : p.get(machine);
@@ -160,7 +160,7 @@ std::vector<std::pair<std::string, Machine>> machines_of_each_law(const Machine&
 
 LimitFit fit_law(const std::vector<TimedLines>& data, const Machine& base, const TracedAccelerations& acceleration,
                  int max_iterations) {
-  std::vector<LimitParameter> parameters = limit_parameters(base, any_logged(data));
+  std::vector<LimitParameter> parameters = limit_parameters(base, any_logged(data), any_lags(data));
   const bool overlap = blocks_overlap(data, base);
   for (LimitParameter& p : parameters) {
     const auto axis = axis_of_acceleration(p);
@@ -183,7 +183,7 @@ double held_out_percent(const std::vector<TimedLines>& data, const Machine& mach
   double sum = 0;
   std::size_t count = 0;
   for (const TimedLines& lines : data) {
-    const auto planned = planned_times_s(lines, machine, feedmodel::plan_motion(*lines.program, machine).times);
+    const auto planned = planned_times_s(lines, machine, feedmodel::plan_motion(*lines.program, machine));
     for (std::size_t i = 0; i < planned.size(); ++i) {
       if (lines.time_s[i] <= 0 || !lines.kept_back[i]) continue;
       sum += 100 * std::abs(planned[i] / lines.time_s[i] - 1);

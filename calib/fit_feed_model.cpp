@@ -398,6 +398,7 @@ void set_waits(FitFeedResult& result, const std::vector<TimedLines>& data, doubl
 
 /// Which program of camber protocol has what a parameter shows in.
 std::string_view what_tells(std::string_view name) {
+  if (name.ends_with("position_gain_per_s")) return "record commanded and actual positions";
   if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
   if (name.ends_with("deg_per_s2")) return "run the rotary program of camber protocol";
   if (name.find("arc_") != name.npos) return "run the circles of camber protocol";
@@ -422,8 +423,12 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
       result.parameters.push_back({p.name, p.fitted.value, p.unit, std::nullopt,
                                    "usual value: the traces tell it only together with the accelerations", true});
     } else if (p.determined) {
-      const std::string note = p.from_ramps ? "constant accelerations of the commands" : logged ? source_of(p) : "";
-      result.parameters.push_back({p.name, p.fitted.value, p.unit, p.fitted.std_error, note, true, p.stretches});
+      const std::string note = p.from_ramps ? "constant accelerations of the commands"
+                               : p.poor     ? fmt::format("poorly determined ({})", what_tells(p.name))
+                               : logged     ? source_of(p)
+                                            : "";
+      const auto error = std::isfinite(p.fitted.std_error) ? std::optional(p.fitted.std_error) : std::nullopt;
+      result.parameters.push_back({p.name, p.fitted.value, p.unit, error, note, true, p.stretches});
     } else {
       result.parameters.push_back({p.name, p.get(start), p.unit, std::nullopt,
                                    fmt::format("not determined by the {}; start value kept ({})",
@@ -493,13 +498,13 @@ void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
 }  // namespace
 
 std::optional<TimePromise> time_promise(const std::vector<double>& true_s, const std::vector<double>& predicted_s) {
-  constexpr std::size_t kFewest = 5, kDraws = 2000;
-  if (true_s.size() < kFewest) return std::nullopt;
+  constexpr std::size_t kParts = 5, kDraws = 2000;
+  if (true_s.size() < kParts) return std::nullopt;
   std::mt19937 random(1);
   std::vector<double> percent;
   for (std::size_t draw = 0; draw < kDraws; ++draw) {
     double sum = 0, predicted = 0;
-    for (std::size_t i = 0; i < true_s.size(); ++i) {
+    for (std::size_t i = 0; i < kParts; ++i) {
       const std::size_t at = random() % true_s.size();
       sum += true_s[at];
       predicted += predicted_s[at];
@@ -548,6 +553,11 @@ void judge(FitFeedResult& result, const std::vector<FeedRun>& runs, int keep_bac
     }
     result.runs.push_back(std::move(accuracy));
   }
+  for (const LoggedTime& t : result.logged)
+    if (t.kept_back) {
+      true_s.push_back(t.time_s);
+      predicted_s.push_back(t.model_s);
+    }
   result.promise = time_promise(true_s, predicted_s);
   for (int i = 0; i < 2; ++i) {
     FitError& error = i ? result.held_out : result.fitted;
@@ -575,7 +585,7 @@ LoggedError error_of(const std::vector<LoggedTime>& logged, bool kept_back) {
 /// The logged stretches with the limits as they are written; their waits are still one number.
 void judge_logged(FitFeedResult& result, const std::vector<LoggedLines>& logged, const Machine& machine) {
   for (const LoggedLines& l : logged) {
-    const auto model_s = planned_times_s(l.lines, machine, feedmodel::plan_motion(*l.program, machine).times);
+    const auto model_s = planned_times_s(l.lines, machine, feedmodel::plan_motion(*l.program, machine));
     for (std::size_t i = 0; i < model_s.size(); ++i)
       result.logged.push_back({l.program_name, l.lines.parts[i], l.lines.kept_back[i] != 0, l.lines.time_s[i],
                                l.lines.sigma_s[i], model_s[i]});
@@ -698,15 +708,20 @@ FitFeedResult fit_feed(const std::vector<FeedRun>& runs, const std::vector<Stret
   const Machine base = result.machine;
   result.machine = limits.machine;
   add_limits(result, limits, base, !logged.empty());
-  judge_logged(result, logged, limits.machine);
+  Machine lagging = limits.machine;
+  for (std::size_t i = 0; i < lagging.axis.size(); ++i)
+    lagging.axis[i].position_gain_per_s = limits.whole.axis[i].position_gain_per_s;
+  judge_logged(result, logged, lagging);
   if (start.control.kind.fits_short_lines && limits.machine.control.corner.law == machine::CornerLaw::blend)
     add_listed(result);
   add_angles(result);
-  result.machine.control.rest_latency_s = rest_latency_s(runs);
-  result.parameters.push_back({"control.rest_latency_ms", 1000 * result.machine.control.rest_latency_s, "ms",
-                               std::nullopt, "median of the rests", true});
+  if (!runs.empty()) {
+    result.machine.control.rest_latency_s = rest_latency_s(runs);
+    result.parameters.push_back({"control.rest_latency_ms", 1000 * result.machine.control.rest_latency_s, "ms",
+                                 std::nullopt, "median of the rests", true});
+  }
   const DriveFitOptions drive_options{.period_s = result.machine.control.period_s};
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3 && !runs.empty(); ++axis) {
     result.drives[axis] = fit_drive(traces, axis, drive_options);
     add_drive(result.machine, result.parameters, axis, result.drives[axis]);
     drives_converged = drives_converged && (!result.drives[axis].moved || result.drives[axis].converged);

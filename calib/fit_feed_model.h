@@ -44,8 +44,9 @@ struct TimePromise {
   double low_percent = 0, high_percent = 0;
 };
 
-/// Bootstrap over parts that were held out (fixed seed): as many of them are drawn, with repetition, and their
-/// predicted and true times added up. Nothing for less than five parts.
+/// Bootstrap over parts that were held out (fixed seed): five of them are drawn, with repetition, and their predicted
+/// and true times added up. A next program has few kinds of motion: over all parts held out their errors would cancel
+/// each other more than in it. Nothing for less than five parts.
 std::optional<TimePromise> time_promise(const std::vector<double>& true_s, const std::vector<double>& predicted_s);
 
 /// The model's error on parts of the traces.

@@ -25,9 +25,10 @@ constexpr double kTimeNoise = 0.001;     // s; a part's time is known to about a
 constexpr double kTimeFraction = 0.002;  // and to this fraction of itself
 constexpr double kLogFraction = 0.003;   // a model's error grows with the time; stretches of a log are long
 constexpr double kUsualArcNormal = 0.87, kUsualArcTangential = 0.5, kUsualStop = 0.5;
-constexpr double kPriorWeight = 0.3;  // of a logarithm: start values count where times tell nothing
-constexpr double kTelling = 0.3;      // of what a part's time is known to, by a change by a factor e
-constexpr double kNoTime = 1e-9;      // s
+constexpr double kDeterminedError = 0.5;  // of a logarithm
+constexpr double kPriorWeight = 0.3;      // of a logarithm: start values count where times tell nothing
+constexpr double kTelling = 0.3;          // of what a part's time is known to, by a change by a factor e
+constexpr double kNoTime = 1e-9;          // s
 constexpr double kShiftSamples = 0.5;
 constexpr double kWideLossScale = 300.0;
 constexpr double kLossScale = 3.0;  // residuals beyond this many of those count less and less
@@ -86,6 +87,19 @@ LimitParameter speed_difference(const char* name) {
           .fitted = {}};
 }
 
+/// By the lag in logged times.
+template <int axis>
+LimitParameter position_gain(const char* name) {
+  return {.name = name,
+          .unit = "1/s",
+          .get = [](const Machine& m) { return m.axis[axis].position_gain_per_s; },
+          .set = [](Machine& m, double v) { m.axis[axis].position_gain_per_s = v; },
+          .least = 5,
+          .most = 2000,
+          .start = 40,
+          .fitted = {}};
+}
+
 /// Whether each axis has a permitted speed difference of its own.
 bool differs_by_axis(const Machine& m) {
   return m.control.corner.law == machine::CornerLaw::speed_difference &&
@@ -122,6 +136,8 @@ LimitParameter stop_time_parameter() {
       [](Machine& m, double v) { m.control.corner.stop_time_s = v / 1000; }, 0.1, 2000, 30);
 }
 
+bool is_acceleration(const LimitParameter& p) { return p.name.find(".acceleration_") != p.name.npos; }
+
 double scale_of(const TimedLines& lines, std::size_t part) {
   const double time_s = lines.time_s[part];
   return lines.logged() ? std::hypot(lines.sigma_s[part], kLogFraction * time_s)
@@ -132,12 +148,12 @@ double scale_of(const TimedLines& lines, std::size_t part) {
 void residuals_of(const std::vector<TimedLines>& data, const Machine& machine, bool kept_back,
                   std::vector<double>& residuals) {
   residuals.clear();
-  std::vector<feedmodel::SegmentTime> segments;
+  feedmodel::MotionPlan plan;
   const nc::Interpretation* planned_program = nullptr;
   for (const TimedLines& lines : data) {
-    if (lines.program != planned_program) segments = feedmodel::plan_motion(*lines.program, machine).times;
+    if (lines.program != planned_program) plan = feedmodel::plan_motion(*lines.program, machine);
     planned_program = lines.program;
-    const std::vector<double> planned = planned_times_s(lines, machine, segments);
+    const std::vector<double> planned = planned_times_s(lines, machine, plan);
     for (std::size_t i = 0; i < planned.size(); ++i) {
       if (lines.time_s[i] <= 0 || (lines.kept_back[i] != 0) != kept_back) continue;
       residuals.push_back((planned[i] - lines.time_s[i]) / scale_of(lines, i));
@@ -317,7 +333,14 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
     LimitParameter& p = fit.parameters[determined[a]];
     const double log_error = std::sqrt(std::max(0.0, covariance(a, a)));
     p.fitted.std_error = p.fitted.value * log_error;
-    if (log_error > 0.5) p.determined = false;
+    if (log_error > kDeterminedError) p.determined = false;
+  }
+  // An axis that moves has a limit, even where its value is hardly known.
+  for (int i = 0; i < n; ++i) {
+    LimitParameter& p = fit.parameters[i];
+    p.poor = !p.determined && is_acceleration(p) && std::isinf(p.get(base)) && j.col(i).norm() > 0;
+    // Directions have length one: a lag that all axes share does not show.
+    p.determined = (p.determined || p.poor) && !p.name.ends_with("position_gain_per_s");
   }
 }
 
@@ -353,7 +376,13 @@ bool any_logged(const std::vector<TimedLines>& data) {
   return std::any_of(data.begin(), data.end(), [](const TimedLines& lines) { return lines.logged(); });
 }
 
-std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged) {
+bool any_lags(const std::vector<TimedLines>& data) {
+  return std::ranges::any_of(data, [](const TimedLines& lines) {
+    return std::ranges::any_of(lines.turns, [](const Vec3& turn) { return !turn.isZero(0); });
+  });
+}
+
+std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged, bool lags) {
   const auto fraction = [](const char* name, double (*get)(const Machine&), void (*set)(Machine&, double),
                            double value) {
     LimitParameter p{
@@ -398,6 +427,11 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
     p.push_back(a_number(
         "control.rapid_change_ms", "ms", [](const Machine& m) { return 1000 * m.control.rapid_change_s; },
         [](Machine& m, double v) { m.control.rapid_change_s = v / 1000; }, 0.1, 5000, 30));
+  if (lags) {
+    p.push_back(position_gain<0>("axis.x.position_gain_per_s"));
+    p.push_back(position_gain<1>("axis.y.position_gain_per_s"));
+    p.push_back(position_gain<2>("axis.z.position_gain_per_s"));
+  }
   p.push_back({.name = "control.block_time_ms",
                .unit = "ms",
                .get = [](const Machine& m) { return 1000 * m.control.block_time_s; },
@@ -422,11 +456,42 @@ bool begins_with_period(double start_s, double period_s) {
   return std::abs(periods - std::round(periods)) < kWhole;
 }
 
+/// When a part of the segment's length is covered, since its start.
+double time_at(const feedmodel::Trapezoid& t, double length_mm) {
+  const double accelerated = (t.entry + t.peak) / 2 * t.accelerate_s, cruised = accelerated + t.peak * t.cruise_s;
+  const auto ramp_s = [&](double from_speed, double way_mm) {
+    if (std::isinf(t.acceleration)) return 0.0;
+    return (std::sqrt(from_speed * from_speed + 2 * t.acceleration * std::max(0.0, way_mm)) - from_speed) /
+           t.acceleration;
+  };
+  if (length_mm < accelerated) return ramp_s(t.entry, length_mm);
+  if (length_mm < cruised) return t.accelerate_s + (length_mm - accelerated) / t.peak;
+  return t.duration_s() - ramp_s(t.exit, t.length - length_mm);
+}
+
 }  // namespace
 
-std::vector<double> planned_times_s(const TimedLines& data, const Machine& machine,
-                                    const std::vector<feedmodel::SegmentTime>& segments) {
+double time_outside_s(const feedmodel::MotionPlan& plan, std::size_t segment, double from_u, double to_u) {
+  const auto same = [&](std::size_t i) {
+    return i < plan.times.size() && !plan.times[i].rest && plan.times[i].move == plan.times[segment].move;
+  };
+  std::size_t first = segment, end = segment;
+  while (first > 0 && same(first - 1)) --first;
+  double whole_mm = 0, before_mm = 0, outside_s = 0;
+  for (; same(end); ++end) whole_mm += plan.rows[end].length_mm;
+  for (std::size_t i = first; i < end; before_mm += plan.rows[i++].length_mm) {
+    const feedmodel::Trapezoid profile = feedmodel::profile_of(plan.rows, i);
+    const double planned_s = profile.duration_s();
+    const double from_s = time_at(profile, std::clamp(from_u * whole_mm - before_mm, 0.0, profile.length)),
+                 to_s = time_at(profile, std::clamp(to_u * whole_mm - before_mm, 0.0, profile.length));
+    if (planned_s > 0) outside_s += (1 - (to_s - from_s) / planned_s) * plan.times[i].duration_s;
+  }
+  return outside_s;
+}
+
+std::vector<double> planned_times_s(const TimedLines& data, const Machine& machine, const feedmodel::MotionPlan& plan) {
   assert(data.program != nullptr);
+  const std::vector<feedmodel::SegmentTime>& segments = plan.times;
   std::vector<double> times(data.parts.size(), 0.0);
   std::size_t i = 0;
   for (std::size_t p = 0; p < data.parts.size(); ++p) {
@@ -437,12 +502,16 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
     const auto within = [&](std::size_t k) {
       return data.logged() ? segments[k].move < data.moves[p].second : line(k) <= data.parts[p].line_last;
     };
+    while (data.logged() && i > 0 && !before(i - 1)) --i;  // a piece may end on the move on which the next one begins
     while (i < segments.size() && (segments[i].rest || before(i))) ++i;
+    const std::size_t begin = i;
+    std::size_t last = i;
     double first = -1, end = 0;
     const double before_end = i > 0 ? segments[i - 1].start_s + segments[i - 1].duration_s : 0.0;
     for (; i < segments.size() && (segments[i].rest || within(i)); ++i) {
       if (segments[i].rest) continue;
       if (first < 0) first = boundary_s(before_end, segments[i]);
+      last = i;
       end = segments[i].start_s + segments[i].duration_s;
     }
     if (first < 0) continue;
@@ -455,13 +524,48 @@ std::vector<double> planned_times_s(const TimedLines& data, const Machine& machi
     const bool waits = data.logged() && !data.ends_in_motion[p];
     times[p] = end - first + (counts_more ? 0.5 * machine.control.period_s : 0.0) +
                (waits ? machine.control.rapid_change_s : 0.0);
+    if (data.fractions.empty()) continue;
+    for (int i = 0; i < 3; ++i)
+      times[p] +=
+          data.turns[p][i] * (1 - machine.axis[i].feed_forward_percent / 100) / machine.axis[i].position_gain_per_s;
+    const auto [first_u, last_u] = data.fractions[p];
+    if (first_u > 0) times[p] -= time_outside_s(plan, begin, first_u, 1);
+    if (last_u < 1) times[p] -= time_outside_s(plan, last, 0, last_u);
   }
   return times;
 }
 
+namespace {
+
+/// No part, held out or not, takes less than its blocks, where these are not merged.
+double longest_block_time_s(const std::vector<TimedLines>& data) {
+  constexpr std::size_t kFewestBlocks = 5;
+  constexpr double kTolerance = 1.05;
+  double longest = INFINITY;
+  for (const TimedLines& lines : data)
+    for (std::size_t p = 0; p < lines.parts.size(); ++p) {
+      const TracePart& part = lines.parts[p];
+      const std::size_t all = lines.logged() ? lines.moves[p].second - lines.moves[p].first
+                                             : part.line_last - part.line_first + std::size_t{1},
+                        whole = std::max<std::size_t>(all, 2) - 2;
+      if (lines.time_s[p] > 0 && whole >= kFewestBlocks)
+        longest = std::min(longest, kTolerance * lines.time_s[p] / static_cast<double>(whole));
+    }
+  return longest;
+}
+
+void bound_block_time(const std::vector<TimedLines>& data, const Machine& base, LimitParameter& p) {
+  if (p.name != "control.block_time_ms" || base.control.kind.g64_p_merges) return;
+  p.most = std::clamp(1000 * longest_block_time_s(data), 2 * p.least, p.most);
+  p.start = std::min(p.start, 0.999 * p.most);
+}
+
+}  // namespace
+
 double scan_start(const std::vector<TimedLines>& data, const Machine& base, std::vector<LimitParameter>& parameters,
                   std::size_t index, int steps) {
   LimitParameter& p = parameters[index];
+  bound_block_time(data, base, p);
   std::vector<double> logs, residuals;
   for (const LimitParameter& q : parameters) logs.push_back(std::log(q.start));
   double least = INFINITY, best = p.start;
@@ -512,7 +616,7 @@ LimitFit fit_once(const std::vector<TimedLines>& data, const Machine& start, std
     if (p.determined) p.set(fit.machine, p.fitted.value);
   std::vector<double> milliseconds;
   for (const TimedLines& lines : data) {
-    const auto planned = planned_times_s(lines, fitted, feedmodel::plan_motion(*lines.program, fitted).times);
+    const auto planned = planned_times_s(lines, fitted, feedmodel::plan_motion(*lines.program, fitted));
     for (std::size_t i = 0; i < planned.size(); ++i)
       if (lines.time_s[i] > 0 && !lines.kept_back[i])
         milliseconds.push_back(1000 * std::abs(planned[i] - lines.time_s[i]));
@@ -532,20 +636,39 @@ bool is_ambiguous(const LimitParameter& p) {
   return std::isinf(p.fitted.std_error) ? p.acts : p.fitted.std_error > kLogError * p.fitted.value;
 }
 
-bool is_acceleration(const LimitParameter& p) { return p.name.find(".acceleration_") != p.name.npos; }
+/// A block time that logged times do without as well is only the longest that they allow, and others make up for it.
+LimitFit without_idle_block_time(LimitFit fit, const std::vector<TimedLines>& data, const Machine& start,
+                                 int max_iterations) {
+  constexpr double kWorth = 0.02, kShortBlockS = 0.02;
+  if (!any_logged(data)) return fit;
+  std::vector<LimitParameter> others = fit.parameters;
+  for (LimitParameter& p : others) p.start = std::clamp(p.fitted.value, p.least * 1.001, p.most * 0.999);
+  LimitParameter block_time = others.back();
+  others.pop_back();
+  LimitFit without = fit_once(data, start, std::move(others), max_iterations, false);
+  const bool short_blocks = longest_block_time_s(data) < kShortBlockS;
+  if (short_blocks && without.fitted_cost > (1 + kWorth) * fit.fitted_cost) return fit;
+  block_time.determined = block_time.acts = false;
+  block_time.fitted.std_error = INFINITY;
+  without.parameters.push_back(std::move(block_time));
+  return without;
+}
 
 }  // namespace
 
 LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, std::vector<LimitParameter> parameters,
                     int max_iterations, bool far_away) {
-  for (LimitParameter& p : parameters) p.assumed = false;
+  for (LimitParameter& p : parameters) {
+    p.assumed = false;
+    bound_block_time(data, start, p);
+  }
   LimitFit fit = fit_once(data, start, parameters, max_iterations, far_away);
   const auto ambiguous = [](const LimitParameter& p) { return !p.from_ramps && is_ambiguous(p); };
   const auto is_share = [&](const LimitParameter& p) { return p.name.ends_with("_share") && ambiguous(p); };
   const bool together =
       std::ranges::any_of(fit.parameters, [&](const auto& p) { return is_acceleration(p) && ambiguous(p); }) &&
       std::ranges::any_of(fit.parameters, is_share);
-  if (!together) return fit;
+  if (!together) return without_idle_block_time(std::move(fit), data, start, max_iterations);
   // The times tell accelerations and shares of them only together: the shares keep their usual values.
   Machine base = start;
   std::vector<LimitParameter> free, assumed;
@@ -560,7 +683,8 @@ LimitFit fit_limits(const std::vector<TimedLines>& data, const Machine& start, s
     p.fitted = {p.usual, INFINITY};
     p.assumed = p.acts = true;
   }
-  fit = fit_once(data, base, std::move(free), max_iterations, far_away);
+  fit = without_idle_block_time(fit_once(data, base, std::move(free), max_iterations, far_away), data, base,
+                                max_iterations);
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (parameters[i].assumed)
       fit.parameters.insert(fit.parameters.begin() + static_cast<std::ptrdiff_t>(i), parameters[i]);

@@ -24,12 +24,16 @@ struct TimedLines {
   std::vector<double> sigma_s{};
   /// The moves [first, end) of each logged part; a program of stretches may have their lines elsewhere again.
   std::vector<std::pair<std::size_t, std::size_t>> moves{};
-  std::vector<char> ends_in_motion{};  ///< of each logged part: no wait at its end
-  double step_s = 0;                   ///< between the samples of a servo trace
+  std::vector<std::pair<double, double>> fractions{};  ///< FeedStretch::first_u, last_u of each logged part
+  std::vector<Vec3> turns{};                           ///< TimedStretch::turn of each logged part
+  std::vector<char> ends_in_motion{};                  ///< of each logged part: no wait at its end
+  double step_s = 0;                                   ///< between the samples of a servo trace
   bool logged() const { return !sigma_s.empty(); }
 };
 
 bool any_logged(const std::vector<TimedLines>& data);
+/// Whether the times of some parts are those of lagging axes.
+bool any_lags(const std::vector<TimedLines>& data);
 
 /// Whether the plan of some program has blocks that last whole periods (feedmodel/overlap.h).
 bool blocks_overlap(const std::vector<TimedLines>& data, const machine::Machine& machine);
@@ -52,6 +56,7 @@ struct LimitParameter {
   double usual = 0;  ///< of a share: what controls have
   FittedValue fitted;
   bool determined = false;  ///< determined by the data
+  bool poor = false;        ///< but hardly: the error is of the size of the value
   /// `fitted` was read in the commands of the traces (traced_motion.h) and stays.
   bool from_ramps = false;
   bool acts = false;     ///< it changes some time
@@ -63,8 +68,8 @@ struct LimitParameter {
 
 /// Those that act under the machine's corner law, with start values that suit most controls (never the machine's own:
 /// a fit that begins at a wrong value may stay there). The block time is the last one. `logged`: with the wait between
-/// feed and rapid, which logged times hold.
-std::vector<LimitParameter> limit_parameters(const machine::Machine& machine, bool logged = false);
+/// feed and rapid, which logged times hold. `lags`: with the position gains.
+std::vector<LimitParameter> limit_parameters(const machine::Machine& machine, bool logged = false, bool lags = false);
 
 struct LimitFit {
   machine::Machine machine;  ///< with the values that the data tell
@@ -92,8 +97,11 @@ double scan_start(const std::vector<TimedLines>& data, const machine::Machine& b
 
 /// Seconds that the plan takes for each part: from the start of its first to the end of its last segment (of logged
 /// parts, with the wait before the rapid).
-/// `segments`: the plan of the whole program, plan_motion(*data.program, machine).times.
+/// `plan`: of the whole program, plan_motion(*data.program, machine).
 std::vector<double> planned_times_s(const TimedLines& data, const machine::Machine& machine,
-                                    const std::vector<feedmodel::SegmentTime>& segments);
+                                    const feedmodel::MotionPlan& plan);
+
+/// Seconds that the plan takes on a move for what is not between two fractions of its length; `segment`: any of it.
+double time_outside_s(const feedmodel::MotionPlan& plan, std::size_t segment, double from_u, double to_u);
 
 }  // namespace camber::calib

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <set>
+#include <optional>
+#include <tuple>
 
 #include "calib/bounded_least_squares.h"
 #include "calib/fit_limits.h"
@@ -65,9 +66,7 @@ void set_folds(Data& data) {
 Data shortened(const std::vector<StretchRun>& runs) {
   Data data;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    nc::Interpretation program;
-    program.arcs = runs[r].program.arcs;
-    program.states = runs[r].program.states;
+    StretchProgram program(runs[r].program, false);
     for (const TimedStretch& t : one_for_each_geometry(runs[r].timed, runs[r].program)) {
       Data::Item item;
       item.judged.timed = t;
@@ -75,45 +74,46 @@ Data shortened(const std::vector<StretchRun>& runs) {
       item.judged.constant_feed_s = programmed_time_s(t, runs[r].program);
       item.program = r;
       item.judged.kind = kind_of(t.stretch, runs[r].program);
-      nc::Move rest = runs[r].program.moves[context_of(t.stretch, runs[r].program).first];
-      rest.kind = nc::MoveKind::dwell;
-      rest.end_mm = rest.start_mm;
-      rest.arc = nc::Move::kNoArc;
-      rest.feed_mm_per_s = 0;
-      program.moves.push_back(rest);
-      const StretchContext context = context_of(t.stretch, runs[r].program);
-      item.move_first = program.moves.size() + t.stretch.move_first - context.first;
-      item.move_end = program.moves.size() + t.stretch.move_end - context.first;
-      const auto moves = moves_at_override(runs[r].program, context.first, context.end, t.feed_factor);
-      program.moves.insert(program.moves.end(), moves.begin(), moves.end());
+      std::tie(item.move_first, item.move_end) = program.add(t);
       data.items.push_back(item);
     }
-    data.programs.push_back(std::move(program));
+    data.programs.push_back(program.take());
   }
   set_folds(data);
   return data;
 }
 
-/// Commanded time of each item: its segments, the waits at stops within it, half a period for each start, and the wait
+/// Commanded time of an item: its segments, the waits at stops within it, half a period for each start, and the wait
 /// before the rapid that follows a whole stretch. Summed by hand, not read off the clock, whose whole periods a fit
-/// would stumble on.
+/// would stumble on. `at`: a segment before it.
+double time_s(const Data::Item& item, const Machine& machine, const feedmodel::MotionPlan& plan, std::size_t& at) {
+  const auto& all = plan.times;
+  const FeedStretch& stretch = item.judged.timed.stretch;
+  double time_s = stretch.ends_in_motion() ? 0 : machine.control.rapid_change_s;
+  while (at > 0 && all[at - 1].move >= item.move_first) --at;
+  while (at < all.size() && all[at].move < item.move_first) ++at;
+  std::optional<std::size_t> first;
+  std::size_t last = at;
+  for (; at < all.size() && all[at].move < item.move_end; ++at) {
+    const bool waited = at > 0 && all[at].start_s > all[at - 1].start_s + all[at - 1].duration_s + 1e-9 &&
+                        all[at].move > item.move_first;
+    time_s += all[at].duration_s + (waited ? 0.5 * machine.control.period_s : 0.0);
+    if (all[at].rest) continue;
+    if (!first) first = at;
+    last = at;
+  }
+  if (first && stretch.first_u > 0) time_s -= time_outside_s(plan, *first, stretch.first_u, 1);
+  if (first && stretch.last_u < 1) time_s -= time_outside_s(plan, last, 0, stretch.last_u);
+  return time_s;
+}
+
 std::vector<double> times_s(const Data& data, const Machine& machine) {
   std::vector<double> times;
-  for (const auto& item : data.items)
-    times.push_back(item.judged.timed.stretch.ends_in_motion() ? 0 : machine.control.rapid_change_s);
-  std::size_t at = 0;
+  std::size_t item = 0;
   for (std::size_t p = 0; p < data.programs.size(); ++p) {
-    double end_s = 0;
-    for (const feedmodel::SegmentTime& s : feedmodel::plan_motion(data.programs[p], machine).times) {
-      while (at < data.items.size() && data.items[at].program == p && s.move >= data.items[at].move_end) ++at;
-      const bool counts = at < data.items.size() && data.items[at].program == p && s.move >= data.items[at].move_first;
-      if (counts) {
-        const bool waited = s.start_s > end_s + 1e-9 && s.move > data.items[at].move_first;
-        times[at] += s.duration_s + (waited ? 0.5 * machine.control.period_s : 0.0);
-      }
-      end_s = s.start_s + s.duration_s;
-    }
-    while (at < data.items.size() && data.items[at].program == p) ++at;
+    const feedmodel::MotionPlan plan = feedmodel::plan_motion(data.programs[p], machine);
+    for (std::size_t at = 0; item < data.items.size() && data.items[item].program == p; ++item)
+      times.push_back(time_s(data.items[item], machine, plan, at));
   }
   return times;
 }
@@ -530,6 +530,7 @@ StretchFit fit_stretches(const std::vector<StretchRun>& runs, const Machine& sta
   }
   fit.fitted = fit.laws[fit.chosen].fitted;
   fit.held_out = fit.laws[fit.chosen].held_out;
+  fit.promise = time_promise(measured, best->kind_held_out_s);
   fit.machine.control.in_position_mm = start.control.in_position_mm;
   fit.constant_feed = stretch_errors(measured, constant);
   fit.stop_every_block = stretch_errors(measured, stopping);

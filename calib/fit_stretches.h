@@ -62,6 +62,7 @@ struct StretchFit {
   std::size_t chosen = 0;                ///< index into laws
   std::vector<JudgedStretch> stretches;  ///< one for each geometry
   StretchErrors fitted, held_out, constant_feed, stop_every_block;
+  std::optional<TimePromise> promise;                     ///< from each kind of motion predicted by a fit on the others
   std::vector<std::array<double, 2>> unseen_corners_rad;  ///< gaps wider than 5 degrees between corner angles
   int folds = 0;
   bool converged = false;

@@ -16,21 +16,27 @@ constexpr double kAheadMm = 0.5;      // how far ahead of the axes' way a place 
 constexpr double kAheadFactor = 1.3;  // times that way: corners are cut
 constexpr double kAheadTime = 1.25;   // times the way at the programmed feed: overrides
 constexpr double kDetour = 0.02;      // what a millimetre along the path counts beside one off it
+constexpr double kOffRapid = 0.02;    // what a millimetre off the line of a rapid counts, where its axes may go
 constexpr std::size_t kMaxWays = 12;
 constexpr double kHopelessMm = 5.0;  // a way that costs this much more than the best is given up
 constexpr double kSamePlaceMm = 0.02;
 constexpr double kStillMm = 2e-3;      // from sample to sample
-constexpr double kMaxOffPathMm = 0.5;  // of 19 in 20 samples
+constexpr double kMaxOffPathMm = 0.5;  // of 19 in 20 samples,
+constexpr double kMaxOffPathS = 0.03;  // beside so much of the way that axes lag behind, which cut corners
 constexpr double kLostMm = 5.0;        // a start from which a sample is this far off is wrong
 constexpr std::size_t kTrialSamples = 400;
 constexpr std::size_t kMaxStarts = 4000;
 constexpr double kSameExtentMm = 1.0;
-constexpr double kMinEndSpeed = 0.1;  // of the piece's mean: slower, the time of its end is not known well
+constexpr double kMinEndSpeed = 0.1;  // of the mean around a sample: slower, the axes stop there
+constexpr double kPassageS = 0.002;   // drives of several axes lag by different times
+constexpr double kMaxLagChangeS = 0.015;
 
 bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc; }
 
+bool is_actual(const ServoTrace& trace) { return trace.has_actual == std::array<bool, 3>{true, true, true}; }
+
 const Vec3& position(const ServoTrace& trace, std::size_t k) {
-  return trace.has_actual == std::array<bool, 3>{true, true, true} ? trace.actual_mm[k] : trace.command_mm[k];
+  return is_actual(trace) ? trace.actual_mm[k] : trace.command_mm[k];
 }
 
 class Follower {
@@ -101,7 +107,9 @@ class Follower {
       const nc::Move& move = program_.moves[m];
       if (!move.reference && move.kind != nc::MoveKind::dwell) {
         const double from_u = m == from.place.move ? from.place.u : 0.0;
-        const PathPlace here = feedmodel::closest_on_move(program_, m, point_mm, from_u, 1);
+        PathPlace here = feedmodel::closest_on_move(program_, m, point_mm, from_u, 1);
+        if (move.kind == nc::MoveKind::rapid)
+          here.distance_mm = std::min(here.distance_mm, off_rapid_mm(move, point_mm) + kOffRapid * here.distance_mm);
         const double way_mm = passed_mm + here.u * length_mm_[m];
         // The way is at least as long as its chord.
         const double cost = here.distance_mm + (way_mm < went_mm ? went_mm - way_mm : kDetour * (way_mm - went_mm));
@@ -131,6 +139,12 @@ class Follower {
       if (!known(way)) best.push_back(way);
     }
     return best;
+  }
+
+  /// The axes of a rapid may go each by itself, anywhere between its ends.
+  static double off_rapid_mm(const nc::Move& move, const Vec3& point_mm) {
+    const Vec3 low = move.start_mm.cwiseMin(move.end_mm), high = move.start_mm.cwiseMax(move.end_mm);
+    return (point_mm - point_mm.cwiseMax(low).cwiseMin(high)).norm();
   }
 
   double along_mm(const PathPlace& place) const { return from_mm_[place.move] + place.u * length_mm_[place.move]; }
@@ -187,7 +201,11 @@ std::optional<PlacedTrace> placed_with(const ServoTrace& trace, const nc::Interp
   placed.place.assign(first, start);
   follower.follow(start, first, trace.size(), &placed.place);
   std::vector<double> off;
-  for (const PathPlace& p : placed.place) off.push_back(p.distance_mm);
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    const std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, trace.size() - 1);
+    const double speed = (position(trace, b) - position(trace, a)).norm() / (trace.t_s[b] - trace.t_s[a]);
+    off.push_back(std::max(0.0, placed.place[k].distance_mm - kMaxOffPathS * speed));
+  }
   const auto p95 = off.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(off.size() - 1));
   std::ranges::nth_element(off, p95);
   placed.off_path_p95_mm = *p95;
@@ -217,67 +235,86 @@ void set_lines(ServoTrace& trace, const nc::Interpretation& program, const Place
 
 namespace {
 
-/// Time and speed at the end of each move, where the trace passes it; NaN elsewhere.
-struct Passages {
-  std::vector<double> t_s, speed_mm_per_s;
+/// A sample in motion within a run of feed moves.
+struct Passage {
+  std::size_t sample = 0;
+  double sigma_s = 0;
 };
 
-Passages passages_of(const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed) {
-  std::vector<double> from_mm{0.0};  // of each move, along the path
-  for (const nc::Move& move : program.moves)
-    from_mm.push_back(from_mm.back() + (move.reference ? 0 : nc::length_mm(program, move)));
-  const auto along = [&](const PathPlace& p) {
-    return from_mm[p.move] + p.u * (from_mm[p.move + 1] - from_mm[p.move]);
-  };
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  Passages out{std::vector<double>(program.moves.size(), nan), std::vector<double>(program.moves.size(), 0)};
-  for (const Stretch& s : trace.stretches) {
-    for (std::size_t k = s.first + 1; k < s.end; ++k) {
-      const double a = along(placed.place[k - 1]), b = along(placed.place[k]);
-      if (b <= a) continue;
-      const double speed = (b - a) / (trace.t_s[k] - trace.t_s[k - 1]);
-      for (std::uint32_t m = placed.place[k - 1].move; m < placed.place[k].move + 1U; ++m) {
-        const double end = from_mm[m + 1];
-        if (end < a || end >= b) continue;
-        out.t_s[m] = trace.t_s[k - 1] + (end - a) / speed;
-        out.speed_mm_per_s[m] = speed;
-      }
-    }
-  }
-  return out;
+/// How well a sample tells when the axes pass its place: they lag by another time where the speed changes, and where
+/// they are off the path.
+double passage_sigma_s(double before_mm_per_s, double after_mm_per_s, double step_s, double off_mm) {
+  const double sum = after_mm_per_s + before_mm_per_s, change = std::abs(after_mm_per_s - before_mm_per_s) / sum;
+  return std::hypot(kPassageS, std::min(kMaxLagChangeS, change * step_s / 4), off_mm / sum);
 }
+
+/// Samples of each run of feed moves, without those near its ends, where the axes hardly move.
+class Passages {
+ public:
+  Passages(const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed)
+      : trace_(trace), placed_(placed), from_mm_{0.0} {
+    for (const nc::Move& move : program.moves)
+      from_mm_.push_back(from_mm_.back() + (move.reference ? 0 : nc::length_mm(program, move)));
+  }
+
+  std::vector<Passage> within(const FeedStretch& run, const Stretch& samples) const {
+    std::vector<Passage> found;
+    const auto moves = [&](std::size_t k) { return placed_.place[k].move; };
+    const auto begin = placed_.place.begin();
+    const auto first = std::lower_bound(begin + at(samples.first), begin + at(samples.end), run.move_first,
+                                        [](const PathPlace& p, std::size_t m) { return p.move < m; });
+    for (auto k = std::max<std::size_t>(samples.first + 1, static_cast<std::size_t>(first - begin));
+         k + 1 < samples.end && moves(k) < run.move_end; ++k) {
+      const double before = speed(k - 1, k), after = speed(k, k + 1), mean = speed(k - 1, k + 1);
+      const bool inside = moves(k - 1) >= run.move_first && moves(k + 1) < run.move_end;
+      if (!inside || std::min(before, after) < kMinEndSpeed * mean || mean <= 0) continue;
+      found.push_back({k, passage_sigma_s(before, after, trace_.period_s, placed_.place[k].distance_mm)});
+    }
+    return found;
+  }
+
+ private:
+  static std::ptrdiff_t at(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
+  double along_mm(std::size_t k) const {
+    const PathPlace& p = placed_.place[k];
+    return from_mm_[p.move] + p.u * (from_mm_[p.move + 1] - from_mm_[p.move]);
+  }
+  double speed(std::size_t a, std::size_t b) const {
+    return (along_mm(b) - along_mm(a)) / (trace_.t_s[b] - trace_.t_s[a]);
+  }
+
+  const ServoTrace& trace_;
+  const PlacedTrace& placed_;
+  std::vector<double> from_mm_;  ///< of each move, along the path
+};
 
 }  // namespace
 
 std::vector<TimedStretch> placed_stretches(
-    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, double piece_s,
+    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, const PieceOptions& options,
     const std::function<std::optional<double>(double from_s, double to_s)>& override_between) {
-  const Passages passages = passages_of(trace, program, placed);
-  // A place is known to a fraction of a sample where the axes keep their speed.
-  const double sigma_s = trace.period_s / 4;
+  const Passages passages(trace, program, placed);
   std::vector<TimedStretch> out;
-  for (const FeedStretch& whole : feed_stretches(program)) {
-    std::optional<std::size_t> from;  // the piece begins at the end of this move
-    for (std::size_t m = whole.move_first; m < whole.move_end; ++m) {
-      if (std::isnan(passages.t_s[m])) {
-        from.reset();
-        continue;
+  for (const FeedStretch& run : feed_stretches(program)) {
+    for (const Stretch& samples : trace.stretches) {
+      const std::vector<Passage> found = passages.within(run, samples);
+      for (std::size_t i = 0, k = 1; k < found.size(); ++k) {
+        const double from_s = trace.t_s[found[i].sample], to_s = trace.t_s[found[k].sample];
+        const bool last = k + 1 == found.size() && i == 0;
+        if (to_s - from_s < options.piece_s && !last) continue;
+        const PathPlace &from = placed.place[found[i].sample], &to = placed.place[found[k].sample];
+        const double sigma_s = std::hypot(std::hypot(found[i].sigma_s, options.end_sigma_s),
+                                          std::hypot(found[k].sigma_s, options.end_sigma_s));
+        const auto feed = override_between ? override_between(from_s, to_s) : 1.0;
+        Vec3 turn = Vec3::Zero();
+        if (is_actual(trace))
+          turn = direction_at(program, program.moves[to.move], to.u).cwiseAbs2() -
+                 direction_at(program, program.moves[from.move], from.u).cwiseAbs2();
+        if (feed)
+          out.push_back(
+              {piece_of(run, program, from.move, to.move + 1, from.u, to.u), to_s - from_s, sigma_s, *feed, turn});
+        i = k;
       }
-      const nc::Move& move = program.moves[m];
-      const bool line_ends = m + 1 == program.moves.size() || program.moves[m + 1].block != move.block;
-      if (!line_ends) continue;
-      if (!from) {
-        from = m;
-        continue;
-      }
-      const double time_s = passages.t_s[m] - passages.t_s[*from];
-      if (time_s < piece_s) continue;
-      FeedStretch piece = piece_of(whole, program, *from + 1, m + 1);
-      const double mean = programmed_length_mm(piece, program) / time_s;
-      if (passages.speed_mm_per_s[m] < kMinEndSpeed * mean) continue;
-      const auto feed = override_between ? override_between(passages.t_s[*from], passages.t_s[m]) : 1.0;
-      if (feed) out.push_back({piece, time_s, sigma_s, *feed});
-      from = m;
     }
   }
   return out;

@@ -16,7 +16,7 @@ namespace camber::calib {
 struct PlacedTrace {
   std::vector<feedmodel::PathPlace> place;  ///< of each sample; places never go back
   Vec3 offset_mm = Vec3::Zero();            ///< added to the positions of the trace
-  double off_path_p95_mm = 0;
+  double off_path_p95_mm = 0;               ///< beside what axes that lag cut off corners
 };
 
 /// The trace may begin and end anywhere in the program. Where the axes begin follows from the samples that come after:
@@ -30,12 +30,16 @@ std::optional<PlacedTrace> place_on_path(const ServoTrace& trace, const nc::Inte
 /// Names the line of each sample (0 at rests) from its place.
 void set_lines(ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed);
 
-/// Times of pieces of feed motion: from the end of one line to the end of a later one, about `piece_s` apart, or of
-/// whole stretches where these are shorter. The time of an end is interpolated between samples. For traces whose
-/// samples are too few to show ramps. `override_between`: the override between two times, nothing: not usable; empty:
-/// 100 % throughout.
+struct PieceOptions {
+  double piece_s = 1;      ///< least time of a piece; a shorter run is one piece
+  double end_sigma_s = 0;  ///< how well the log itself tells the time of a sample
+};
+
+/// Times of pieces of feed motion, from one sample to a later one: the place of a sample is known far better than when
+/// a line ends between two of them. For traces whose samples are too few to show ramps. `override_between`: the
+/// override between two times, nothing: not usable; empty: 100 % throughout.
 std::vector<TimedStretch> placed_stretches(
-    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, double piece_s,
+    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, const PieceOptions& options,
     const std::function<std::optional<double>(double from_s, double to_s)>& override_between = {});
 
 }  // namespace camber::calib

@@ -18,6 +18,7 @@ constexpr double kCopyCornerRad = 0.05;       // and so much in their corners
 constexpr double kContextMm = 50;             // the way in which an axis brakes, and more
 constexpr double kTimeFloor = 0.02;           // s; an adapter's clock and median
 constexpr double kNormalP10P90 = 2.563;       // distance of the 10th and 90th percentile of a normal distribution
+constexpr std::size_t kPartsOfMove = 64;      // pieces that end within the same one are copies
 constexpr double kMedianFraction = 1.253;     // error of a median over that of a mean
 
 bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc; }
@@ -197,15 +198,20 @@ std::vector<FeedStretch> feed_stretches(const nc::Interpretation& program) {
 }
 
 FeedStretch piece_of(const FeedStretch& run, const nc::Interpretation& program, std::size_t move_first,
-                     std::size_t move_end) {
+                     std::size_t move_end, double first_u, double last_u) {
   FeedStretch piece = run;
+  piece.first_u = first_u;
+  piece.last_u = last_u;
   piece.move_first = move_first;
   piece.move_end = move_end;
   piece.line_first = program.moves[move_first].block + 1;
   piece.line_last = program.moves[move_end - 1].block + 1;
   if (!piece.begins_in_motion() && !piece.ends_in_motion()) return run;
   // Below those of whole stretches, which are no copies of it.
-  piece.geometry = -1 - static_cast<std::int64_t>(move_first * (program.moves.size() + 1) + move_end);
+  const auto part = [](double u) { return static_cast<std::size_t>(kPartsOfMove * u); };
+  const std::size_t moves = move_first * (program.moves.size() + 1) + move_end;
+  piece.geometry =
+      -1 - static_cast<std::int64_t>((moves * kPartsOfMove + part(first_u)) * kPartsOfMove + part(1 - last_u));
   return piece;
 }
 
@@ -217,6 +223,44 @@ StretchContext context_of(const FeedStretch& stretch, const nc::Interpretation& 
   while (context.end < stretch.run_end && after_mm < kContextMm)
     after_mm += length_mm(program, program.moves[context.end++]);
   return context;
+}
+
+StretchProgram::StretchProgram(const nc::Interpretation& whole, bool with_rapids)
+    : whole_(whole), with_rapids_(with_rapids) {
+  program_.arcs = whole.arcs;
+  program_.states = whole.states;
+}
+
+std::pair<std::size_t, std::size_t> StretchProgram::add(const TimedStretch& timed) {
+  const FeedStretch& s = timed.stretch;
+  const std::vector<nc::Move>& moves = whole_.moves;
+  const auto rapid_at = [&](std::size_t i) {
+    return with_rapids_ && i < moves.size() && moves[i].kind == nc::MoveKind::rapid && !moves[i].reference;
+  };
+  const StretchContext context = context_of(s, whole_);
+  std::size_t from = context.first;
+  if (from > 0 && from == s.run_first && rapid_at(from - 1)) --from;
+  const std::size_t to = context.end + (context.end == s.run_end && rapid_at(context.end) ? 1 : 0);
+  const bool continues = s.run_first == run_first_ && timed.feed_factor == feed_factor_ && from <= end_;
+  if (continues) {
+    from = end_;
+  } else {
+    nc::Move rest = moves[from];
+    rest.kind = nc::MoveKind::dwell;
+    rest.end_mm = rest.start_mm;
+    rest.arc = nc::Move::kNoArc;
+    rest.feed_mm_per_s = 0;
+    program_.moves.push_back(rest);
+    shift_ = program_.moves.size() - from;
+  }
+  run_first_ = s.run_first;
+  feed_factor_ = timed.feed_factor;
+  if (from < to) {
+    const auto added = moves_at_override(whole_, from, to, timed.feed_factor);
+    program_.moves.insert(program_.moves.end(), added.begin(), added.end());
+  }
+  end_ = continues ? std::max(end_, to) : to;
+  return {s.move_first + shift_, s.move_end + shift_};
 }
 
 bool is_stretch_table(const std::string& path) {
@@ -232,14 +276,15 @@ std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::
 
 double programmed_length_mm(const FeedStretch& stretch, const nc::Interpretation& program) {
   double length = 0;
-  for (std::size_t i = stretch.move_first; i < stretch.move_end; ++i) length += length_mm(program, program.moves[i]);
+  for (std::size_t i = stretch.move_first; i < stretch.move_end; ++i)
+    length += stretch.fraction_of(i) * length_mm(program, program.moves[i]);
   return length;
 }
 
 double programmed_time_s(const FeedStretch& stretch, const nc::Interpretation& program) {
   double time = 0;
   for (std::size_t i = stretch.move_first; i < stretch.move_end; ++i)
-    time += length_mm(program, program.moves[i]) / program.moves[i].feed_mm_per_s;
+    time += stretch.fraction_of(i) * length_mm(program, program.moves[i]) / program.moves[i].feed_mm_per_s;
   return time;
 }
 
@@ -273,9 +318,11 @@ std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>&
   for (const auto& [geometry, sum] : sums) {
     TimedStretch t = *sum.first;
     t.time_s = sum.ratio / sum.weight * programmed_time_s(t, program);
-    t.sigma_s = std::max(kTimeFloor, 1.0 / std::sqrt(sum.weight));
+    t.sigma_s = std::max(std::min(kTimeFloor, t.sigma_s), 1.0 / std::sqrt(sum.weight));
     result.push_back(t);
   }
+  std::ranges::stable_sort(result, {},
+                           [](const TimedStretch& t) { return std::pair(t.stretch.move_first, t.stretch.first_u); });
   return result;
 }
 

@@ -2,9 +2,11 @@
 // Stretches of consecutive feed moves with their measured durations.
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/geometry.h"
 #include "nc/move.h"
 
 namespace camber::calib {
@@ -16,10 +18,15 @@ struct FeedStretch {
   std::size_t move_first = 0, move_end = 0;  ///< of the interpretation
   std::size_t run_first = 0, run_end = 0;    ///< moves of the whole run
   int tool = 0;
-  std::int64_t geometry = 0;  ///< equal for stretches of one shape (copies at other places or depths)
+  std::int64_t geometry = 0;       ///< equal for stretches of one shape (copies at other places or depths)
+  double first_u = 0, last_u = 1;  ///< where a piece begins on its first move and ends on its last: fractions of them
 
-  bool begins_in_motion() const { return move_first > run_first; }
-  bool ends_in_motion() const { return move_end < run_end; }
+  bool begins_in_motion() const { return move_first > run_first || first_u > 0; }
+  bool ends_in_motion() const { return move_end < run_end || last_u < 1; }
+  /// Fraction of a move that lies in the stretch.
+  double fraction_of(std::size_t move) const {
+    return (move + 1 == move_end ? last_u : 1.0) - (move == move_first ? first_u : 0.0);
+  }
 };
 
 /// A stretch and its time on the machine.
@@ -28,6 +35,9 @@ struct TimedStretch {
   double time_s = 0;
   double sigma_s = 0;      ///< uncertainty of the time
   double feed_factor = 1;  ///< feed override while it was cut
+  /// Squares of the direction at its end less those at its begin, where the time is that of lagging axes: it is longer
+  /// by their sum over the axes times the lag of each.
+  Vec3 turn = Vec3::Zero();
 };
 
 /// A program and the times that were logged of its stretches.
@@ -42,15 +52,34 @@ struct StretchRun {
 /// much, and the sorted corners by less than 0.05 rad, on average.
 std::vector<FeedStretch> feed_stretches(const nc::Interpretation& program);
 
-/// A piece of a run, by its moves. Its geometry is its own.
+/// A piece of a run, by its moves and where it begins and ends on them. Its geometry is its own.
 FeedStretch piece_of(const FeedStretch& run, const nc::Interpretation& program, std::size_t move_first,
-                     std::size_t move_end);
+                     std::size_t move_end, double first_u = 0, double last_u = 1);
 
 /// Moves of the run around a stretch that decide how fast it begins and ends: 50 mm before and after it. [first, end)
 struct StretchContext {
   std::size_t first = 0, end = 0;
 };
 StretchContext context_of(const FeedStretch& stretch, const nc::Interpretation& program);
+
+/// A program of stretches, each within the moves around it and after a rest, those of one run that lie near each other
+/// within the same moves.
+class StretchProgram {
+ public:
+  /// with_rapids: a whole run has the rapids around it, before which a control may brake otherwise.
+  StretchProgram(const nc::Interpretation& whole, bool with_rapids);
+  /// Returns where its moves [first, end) are in the program. In the order of their moves.
+  std::pair<std::size_t, std::size_t> add(const TimedStretch& timed);
+  nc::Interpretation take() { return std::move(program_); }
+
+ private:
+  const nc::Interpretation& whole_;
+  bool with_rapids_;
+  nc::Interpretation program_;
+  std::size_t run_first_ = 0, end_ = 0;  ///< of the moves added last
+  double feed_factor_ = 0;
+  std::size_t shift_ = 0;  ///< from moves of the whole program, modulo 2^64
+};
 
 /// Whether a file is a table of stretch times: its header names line_first or first_line.
 bool is_stretch_table(const std::string& path);
@@ -63,6 +92,7 @@ std::vector<TimedStretch> read_stretch_table(const std::string& path, const nc::
 
 /// One for each geometry: the first of its stretches, with the mean time and what it is known to.
 /// The difference of a copy to the first is taken by the fraction of the programmed time.
+/// In the order of the program.
 std::vector<TimedStretch> one_for_each_geometry(const std::vector<TimedStretch>& all,
                                                 const nc::Interpretation& program);
 

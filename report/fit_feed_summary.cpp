@@ -61,6 +61,12 @@ std::string logged_text(const FitFeedResult& result) {
   return out;
 }
 
+std::string promise_text(const std::optional<calib::TimePromise>& promise) {
+  if (!promise) return {};
+  return fmt::format("time of a next program like the parts held out: {:+.2f} to {:+.2f} % off in 19 of 20 cases\n",
+                     promise->low_percent, promise->high_percent);
+}
+
 std::string fit_text_of(const FitFeedResult& result) {
   std::string out;
   out += laws_text(result) + parameters_text(result.parameters);
@@ -83,9 +89,7 @@ std::string fit_text_of(const FitFeedResult& result) {
   };
   line("fitted", result.fitted);
   line("held out", result.held_out);
-  if (result.promise)
-    out += fmt::format("time of a next program like the parts held out: {:+.2f} to {:+.2f} % off in 19 of 20 cases\n",
-                       result.promise->low_percent, result.promise->high_percent);
+  out += promise_text(result.promise);
   for (const calib::RunAccuracy& run : result.runs)
     out += fmt::format("{}: {:.2f} s traced, {:.2f} s predicted ({:+.2f} %), path speed rms {:.2f} %, p95 {:.2f} %\n",
                        run.program_name, run.accuracy.time_trace_s, run.accuracy.time_model_s,
@@ -116,6 +120,7 @@ std::string fit_text_of(const calib::StretchFit& fit) {
   }
   line("constant feed", fit.constant_feed);
   line("stop at every block", fit.stop_every_block);
+  out += promise_text(fit.promise);
   out += fmt::format("\n{:<16} {:>4} {:>8} {:>10} {:>9} {:>9} {:>9} {:>10} {:>10}   %\n", "lines", "tool", "kind",
                      "machine, s", "held out", "by kind", "fitted", "const feed", "stop each");
   for (const calib::JudgedStretch& s : fit.stretches) {
@@ -138,6 +143,10 @@ std::string fit_text_of(const calib::StretchFit& fit) {
 
 /// JSON has no infinity.
 Json finite_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+void add_promise(Json& held_out, const std::optional<calib::TimePromise>& promise) {
+  if (promise) held_out["next_program_time_percent"] = {promise->low_percent, promise->high_percent};
+}
 
 Json error_json(const calib::FitError& e) {
   return {{"parts", e.parts},
@@ -183,6 +192,7 @@ Json report_of(const calib::StretchFit& fit) {
   report["parameters"] = parameters_json(fit.parameters);
   report["held_out"] = errors_json(fit.held_out);
   report["held_out"]["stretches"] = fit.stretches.size();
+  add_promise(report["held_out"], fit.promise);
   report["fitted"] = errors_json(fit.fitted);
   report["baselines"] = {{"constant_feed", errors_json(fit.constant_feed)},
                          {"stop_at_every_block", errors_json(fit.stop_every_block)}};
@@ -211,8 +221,7 @@ Json report_of(const FitFeedResult& result) {
   Json report;
   report["parameters"] = parameters_json(result.parameters);
   report["held_out"] = error_json(result.held_out);
-  if (result.promise)
-    report["held_out"]["next_program_time_percent"] = {result.promise->low_percent, result.promise->high_percent};
+  add_promise(report["held_out"], result.promise);
   report["fitted"] = error_json(result.fitted);
   for (int i = 0; i < 3; ++i)
     report["drives"].push_back({{"axis", std::string(1, "xyz"[i])},

@@ -18,7 +18,7 @@ TimedLines timed(const nc::Interpretation& program, const machine::Machine& mach
   }
   lines.step_s = machine.control.period_s;
   lines.time_s.resize(lines.parts.size());
-  lines.time_s = planned_times_s(lines, machine, feedmodel::plan_motion(program, machine).times);
+  lines.time_s = planned_times_s(lines, machine, feedmodel::plan_motion(program, machine));
   return lines;
 }
 

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "calib/feed_accuracy.h"
+#include "calib/fit_feed_model.h"
+#include "calib/fit_limits.h"
+#include "calib/line_speeds.h"
 #include "tests/support/feed_runs.h"
 #include "tests/support/synthetic_control.h"
 
@@ -61,18 +64,16 @@ TEST_F(PositionLog, GivesTimesOfPiecesThatThePlanHas) {
   const ServoTrace log = piece_of_trace(run_.trace, 7001, run_.trace.size() - 5003, 143);
   const auto placed = place_on_path(log, run_.program);
   ASSERT_TRUE(placed);
-  const auto pieces = placed_stretches(log, run_.program, *placed, 4.0);
-  ASSERT_GT(pieces.size(), 3u);
-  for (const TimedStretch& piece : pieces) {
-    EXPECT_TRUE(piece.stretch.begins_in_motion());
-    // True: from the first to the last sample of the lines.
-    double first = -1, last = 0;
-    for (std::size_t k = 0; k < run_.trace.size(); ++k)
-      if (run_.trace.line[k] >= piece.stretch.line_first && run_.trace.line[k] <= piece.stretch.line_last) {
-        if (first < 0) first = run_.trace.t_s[k];
-        last = run_.trace.t_s[k];
-      }
-    EXPECT_NEAR(piece.time_s, last - first, 3 * std::sqrt(2.0) * piece.sigma_s) << piece.stretch.line_first;
+  StretchRun pieces{"spiral", run_.program, placed_stretches(log, run_.program, *placed, {.piece_s = 1})};
+  ASSERT_GT(pieces.timed.size(), 20u);
+  std::size_t count = 0;
+  const std::vector<LoggedLines> logged = logged_lines({pieces}, 3, count);
+  const TimedLines& lines = logged.front().lines;
+  const auto planned_s = planned_times_s(lines, machine_, feedmodel::plan_motion(*lines.program, machine_));
+  ASSERT_EQ(planned_s.size(), pieces.timed.size());
+  for (std::size_t i = 0; i < planned_s.size(); ++i) {
+    EXPECT_TRUE(pieces.timed[i].stretch.begins_in_motion());
+    EXPECT_NEAR(planned_s[i], lines.time_s[i], 3 * lines.sigma_s[i]) << lines.parts[i].line_first;
   }
 }
 
@@ -113,6 +114,61 @@ TEST_F(PositionLog, OfAnotherProgramIsNotPlaced) {
   for (int i = 1; i < 50; ++i) other.line(3.0 * i, i % 2 * 4.0, 0, 1000);
   const ServoTrace log = piece_of_trace(run_.trace, 0, run_.trace.size(), 20);
   EXPECT_FALSE(place_on_path(log, other.program));
+}
+
+/// Zigzags in all planes with positionings between, on axes that differ in acceleration and gain.
+class SparseLog : public ::testing::Test {
+ protected:
+  SparseLog() {
+    constexpr double kAccelerations[] = {1400, 800, 500}, kGains[] = {70, 25, 40};
+    for (int i = 0; i < 3; ++i) {
+      machine_.axis[i].max_velocity_mm_per_s = 120 + 80 * i;
+      machine_.axis[i].acceleration_mm_per_s2 = kAccelerations[i];
+      machine_.axis[i].position_gain_per_s = kGains[i];
+    }
+    machine_.control.corner = {.law = machine::CornerLaw::angle, .time_s = 0.006};
+    tests::TestProgram p;
+    for (int run = 0; run < 18; ++run) {
+      Vec3 at = Vec3::Zero();
+      for (int i = 0; i < 24; ++i) {
+        at[run % 3] += 3 + (i + run) % 4;
+        at[(run + 1) % 3] += (i % 2 ? 1 : -1) * (2 + run % 5);
+        p.line(at.x(), at.y(), at.z(), 1500 + 900 * (run % 4));
+      }
+      p.rapid(0, 0, 0);
+    }
+    run_ = tests::traced_run(p.program, machine_, {});
+    const ServoTrace log = piece_of_trace(run_.trace, 0, run_.trace.size(), 143);
+    if (const auto placed = place_on_path(log, run_.program))
+      timed_ = placed_stretches(log, run_.program, *placed, {.piece_s = 0.4});
+  }
+  machine::Machine machine_;
+  FeedRun run_;
+  std::vector<TimedStretch> timed_;  ///< empty: the log was not placed
+};
+
+/// In a dog-leg rapid the axes are far off the line between its ends.
+TEST_F(SparseLog, IsPlacedThroughRapidsOffTheirLines) { EXPECT_GT(timed_.size(), 60u); }
+
+TEST_F(SparseLog, TellsAccelerationsOfAxesThatLagByDifferentTimes) {
+  const FitFeedResult fit = fit_feed({}, {{"zigzags", run_.program, timed_}}, {}, {});
+  EXPECT_EQ(fit.law, "speed change by angle");
+  for (int i = 0; i < 3; ++i) {
+    const double acceleration = machine_.axis[i].acceleration_mm_per_s2;
+    EXPECT_NEAR(fit.machine.axis[i].acceleration_mm_per_s2, acceleration, 0.08 * acceleration) << i;
+  }
+  // No block is short enough to show a longer one.
+  EXPECT_LE(fit.machine.control.block_time_s, 0.001);
+}
+
+/// Errors of two kinds cancel each other over all parts, not in a program that has a few.
+TEST(TimePromise, HasRoomForProgramsOfFewKinds) {
+  std::vector<double> predicted_s(100, 1.02);
+  std::fill(predicted_s.begin(), predicted_s.begin() + 50, 0.98);
+  const auto promise = time_promise(std::vector<double>(100, 1.0), predicted_s);
+  ASSERT_TRUE(promise);
+  EXPECT_LT(promise->low_percent, -1);
+  EXPECT_GT(promise->high_percent, 1);
 }
 
 }  // namespace
