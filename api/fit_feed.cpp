@@ -76,7 +76,7 @@ std::vector<calib::TimedStretch> log_times(const calib::MachineLog& log, const n
                  "the positions do not follow the path of the program; a log of this program was expected, in mm",
                  "trace-program");
   // Events of the axes come one by one, so that a place is known to a fraction of their distance.
-  const calib::PieceOptions pieces{.piece_s = kLogPieceSamples * trace.period_s, .end_sigma_s = trace.period_s / 4};
+  const calib::PlacingOptions pieces{.piece_s = kLogPieceSamples * trace.period_s, .end_sigma_s = trace.period_s / 4};
   return calib::placed_stretches(trace, program, *placed, pieces,
                                  [&](double from_s, double to_s) { return calib::steady_override(log, from_s, to_s); });
 }

@@ -291,7 +291,8 @@ class Passages {
 }  // namespace
 
 std::vector<TimedStretch> placed_stretches(
-    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, const PieceOptions& options,
+    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed,
+    const PlacingOptions& options,
     const std::function<std::optional<double>(double from_s, double to_s)>& override_between) {
   const Passages passages(trace, program, placed);
   std::vector<TimedStretch> out;

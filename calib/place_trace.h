@@ -30,7 +30,7 @@ std::optional<PlacedTrace> place_on_path(const ServoTrace& trace, const nc::Inte
 /// Names the line of each sample (0 at rests) from its place.
 void set_lines(ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed);
 
-struct PieceOptions {
+struct PlacingOptions {
   double piece_s = 1;      ///< least time of a piece; a shorter run is one piece
   double end_sigma_s = 0;  ///< how well the log itself tells the time of a sample
 };
@@ -39,7 +39,8 @@ struct PieceOptions {
 /// a line ends between two of them. For traces whose samples are too few to show ramps. `override_between`: the
 /// override between two times, nothing: not usable; empty: 100 % throughout.
 std::vector<TimedStretch> placed_stretches(
-    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed, const PieceOptions& options,
+    const ServoTrace& trace, const nc::Interpretation& program, const PlacedTrace& placed,
+    const PlacingOptions& options,
     const std::function<std::optional<double>(double from_s, double to_s)>& override_between = {});
 
 }  // namespace camber::calib
