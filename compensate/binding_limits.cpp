@@ -121,7 +121,8 @@ std::optional<double> p95_of_stretch(const Task& task, const Version& version, c
                                 .contour_mm = whole.contour_mm,
                                 .memory = whole.memory,
                                 .region = whole.region,
-                                .map = whole.map};
+                                .map = whole.map,
+                                .critical_depths = whole.critical_depths};
   SimulatedProgram program = emitted.program;
   program.path = removal::stamps_where(emitted.program.path, [&](std::size_t k) { return k >= from && k < end; });
   simulate::PredictOptions options;

@@ -571,7 +571,8 @@ Prediction judge(const Job& job, const Target& target, const SimulatedProgram& p
   out.between = target.region.between;
   out.unseen_mm2 = target.unseen_mm2;
   out.holes.surface_mm2 = target.holes.drop_from(out.surface);
-  out.chatter = find_chatter(job, program, out.cut.loads, *target.critical_depths);
+  CriticalDepths own;
+  out.chatter = find_chatter(job, program, out.cut.loads, target.critical_depths ? *target.critical_depths : own);
   out.validity = find_validity(job, program, out.cut, out.chatter.invalid_stamps, out.surface);
   std::vector<double> error_um, deflection_um, contour_um, area;
   for (auto* values : {&error_um, &deflection_um, &contour_um, &area}) values->reserve(out.surface.size());
