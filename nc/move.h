@@ -82,7 +82,7 @@ struct Move {
   std::uint8_t reference_point : 2 = 0;  ///< index of the reference point of G28, G30: 0 for the first, to 3
   std::uint8_t reference_axes : 3 = 0;   ///< bit i: axis i goes to that point
   bool creeps : 1 = false;               ///< the last distance of G60
-  bool canned : 1 = false;               ///< made by a drilling cycle: one of several moves of its block
+  bool canned : 1 = false;               ///< made by a cycle: one of several moves of its block
   /// True if the words of the block define this move and no other: the block is in the main program, runs once, and its
   /// words have numbers. Only such blocks may be edited. False in loops, in subprograms called more than once or from a
   /// file of their own, for expressions, under G41 and G42 and in polar coordinates.

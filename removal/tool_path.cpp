@@ -74,7 +74,8 @@ bool in_operations(const nc::Interpretation& program, const nc::Move& m, const m
 std::vector<bool> selected_moves(const nc::Interpretation& program, const machine::Operations& operations) {
   const auto wanted = [&](const nc::Move& m) {
     if (m.kind != nc::MoveKind::linear && m.kind != nc::MoveKind::arc) return false;
-    return !m.reference && !m.canned && in_operations(program, m, operations);
+    const bool of_hole = m.canned && m.cycle != 0;  // see hole_moves()
+    return !m.reference && !of_hole && in_operations(program, m, operations);
   };
   std::vector<bool> out;
   out.reserve(program.moves.size());

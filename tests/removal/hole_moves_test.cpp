@@ -62,6 +62,21 @@ TEST(HoleMoves, TappingIsTappedAndFeedsOutOfTheHole) {
   EXPECT_EQ(h.path.runs[1].kind, RunKind::drilling);
 }
 
+/// A pocket and a bore that cycles mill (252, 208) are cut like lines and arcs of the program.
+TEST(HoleMoves, PocketsOfCyclesAreMilled) {
+  for (const char* cycle : {"CYCL DEF 252 Q215=0 Q223=30 Q368=0 Q207=500 Q351=1 Q201=-2 Q202=2 Q369=0 Q206=150 Q338=0 "
+                            "Q200=2 Q203=0 Q204=20 Q370=1 Q366=0 Q385=400",
+                            "CYCL DEF 208 Q200=2 Q201=-2 Q206=200 Q334=1 Q203=0 Q204=20 Q335=30 Q342=0"}) {
+    const Holes h = holes_of(std::string("BEGIN PGM A MM\nTOOL DEF 1 L+0 R+4\nTOOL CALL 1 Z S3000\n"
+                                         "L X+20 Y+30 Z+50 R0 FMAX M3\n") +
+                             cycle + "\nCYCL CALL\nM30\nEND PGM A MM\n");
+    EXPECT_EQ(h.count(HoleMove::none), h.holes.size()) << cycle;
+    ASSERT_FALSE(h.path.runs.empty()) << cycle;
+    EXPECT_EQ(h.path.runs[0].kind, RunKind::milling) << cycle;
+    EXPECT_NEAR(h.lowest(), -2, 1e-6) << cycle;
+  }
+}
+
 TEST(HoleMoves, BackBoringIsNotCarved) {
   const Holes h = holes_of(kHead + "G98 G87 X1 Y2 Z-3 R-7 Q0.5 F300\nG80\nM30\n");
   EXPECT_EQ(h.count(HoleMove::not_carved), 1u);
