@@ -594,10 +594,6 @@ void judge_logged(FitFeedResult& result, const std::vector<LoggedLines>& logged,
   result.logged_held_out = error_of(result.logged, true);
 }
 
-}  // namespace
-
-namespace {
-
 double& backlash_of(machine::Axis& axis) { return axis.backlash_mm; }
 double& backlash_of(machine::RotaryAxis& axis) { return axis.backlash_rad; }
 double in_machine(const machine::Axis&, double mm) { return mm; }

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -43,10 +46,6 @@ std::vector<machine::ToolProposal> all_tools(const SourceText& program, const In
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 /// A preset as a machine file to start from.
 int write_machine(const InitArguments& arguments, const GlobalOptions& options) {
   const machine::MachinePreset* preset = machine::find_machine_preset(arguments.machine);
@@ -75,10 +74,6 @@ CLI::Validator material_name() {
       "");
 }
 
-}  // namespace
-
-namespace {
-
 /// Machines of which a program that turns rotary axes takes the first that has them; those behind the first only where
 /// the program cannot be read with the tool upright.
 constexpr std::array kFiveAxisPresets{"preset:five-axis-trunnion", "preset:five-axis-trunnion-bc"};
@@ -98,52 +93,79 @@ bool turns_the_tool(const nc::Summary& summary) { return summary.rotary > 0 || s
 struct ReadForJob {
   nc::Interpretation moves;
   std::string machine;  ///< as the arguments name it; else one with the rotary axes that the program turns, or empty
+  std::map<int, double> cutters_mm{};  ///< see JobProposal
 };
 
 bool wants_axes(const Diagnostic& d) {
   return d.check == "rotary-axis" || d.check == "tilted-plane" || d.check == "not-read";
 }
 
-/// The moves. Where cycles ask for the radius of cutters: the usual one, or the largest with which they fit.
-nc::Interpretation moves_of(const nc::Program& text, nc::InterpreterOptions options, Diagnostics& diagnostics) {
-  Diagnostics of_first = diagnostics;
-  nc::Interpretation first = nc::interpret(text, options, of_first);
-  const bool asked = of_first.has_errors() && std::ranges::any_of(of_first.all(), [](const Diagnostic& d) {
-                       return d.check == "radius-unknown" || d.check == "unknown-parameter";
-                     });
-  if (!asked) {
-    diagnostics = std::move(of_first);
-    return first;
+bool asks_for_cutter(const Diagnostics& found) {
+  return found.has_errors() && std::ranges::any_of(found.all(), [](const Diagnostic& d) {
+           return d.check == "radius-unknown" || d.check == "unknown-parameter";
+         });
+}
+
+/// The moves. Where cycles ask for the diameter of cutters that nothing tells: the largest of some usual ones with
+/// which most of them fit; `cutters_mm` gets them by tool.
+nc::Interpretation moves_of(const nc::Program& text, const InitArguments& arguments, nc::InterpreterOptions options,
+                            std::map<int, double>& cutters_mm, Diagnostics& diagnostics) {
+  const auto read = [&](Diagnostics& found) {
+    found = diagnostics;
+    return nc::interpret(text, options, found);
+  };
+  Diagnostics found;
+  nc::Interpretation moves = read(found);
+  if (asks_for_cutter(found)) {
+    std::map<int, double> told;
+    Diagnostics ignored;
+    for (const auto& t : all_tools(text.source, arguments, nc::summarize(text, moves).has_inch, ignored))
+      if (t.number && t.diameter_mm) told[*t.number] = *t.diameter_mm;
+    std::set<int> tools;
+    for (const nc::ModalState& state : moves.states) tools.insert(state.tool);
+    for (const nc::Event& e : moves.events)
+      if (e.kind == nc::EventKind::tool_change) tools.insert(static_cast<int>(e.value));
+    const auto set = [&](int tool, double diameter_mm) {
+      nc::set_cutter_radius(options.tool_offsets, tool, diameter_mm / 2);
+    };
+    for (const int tool : tools) set(tool, told.contains(tool) ? told[tool] : report::kUsualDiameter_mm);
+    for (const int tool : tools) {
+      if (told.contains(tool)) continue;
+      set(tool, 0);
+      read(found);
+      set(tool, report::kUsualDiameter_mm);
+      if (!asks_for_cutter(found)) continue;
+      std::ptrdiff_t least = std::numeric_limits<std::ptrdiff_t>::max();
+      for (const double diameter_mm : {report::kUsualDiameter_mm, 8.0, 6.0, 5.0, 4.0, 3.0, 2.0}) {
+        set(tool, diameter_mm);
+        read(found);
+        const auto unfit =
+            std::ranges::count_if(found.all(), [](const Diagnostic& d) { return d.check == "cutter-too-large"; });
+        if (unfit < least) least = unfit, cutters_mm[tool] = diameter_mm;
+        if (unfit == 0) break;
+      }
+      set(tool, cutters_mm[tool]);
+    }
+    moves = read(found);
   }
-  for (const double diameter_mm : {report::kUsualDiameter_mm, 8.0, 6.0, 5.0, 4.0, 3.0, 2.0}) {
-    for (const nc::ModalState& state : first.states)
-      nc::set_cutter_radius(options.tool_offsets, state.tool, diameter_mm / 2);
-    for (const nc::Event& e : first.events)
-      if (e.kind == nc::EventKind::tool_change)
-        nc::set_cutter_radius(options.tool_offsets, static_cast<int>(e.value), diameter_mm / 2);
-    Diagnostics of_cutter = diagnostics;
-    first = nc::interpret(text, options, of_cutter);
-    const bool too_large = std::ranges::any_of(of_cutter.all(), [](const Diagnostic& d) {
-      return d.message.find("smaller than the tool") != std::string::npos;
-    });
-    if (too_large && diameter_mm > 2) continue;
-    diagnostics = std::move(of_cutter);
-    break;
-  }
-  return first;
+  diagnostics = std::move(found);
+  return moves;
 }
 
 /// The moves; where no machine is named and the program turns rotary axes, those of a machine that has them. What such
 /// a machine cannot read either is said of it, not that rotary axes are missing.
 ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, Diagnostics& diagnostics) {
   Diagnostics upright = diagnostics;
-  ReadForJob out{moves_of(text, interpreter_of(arguments.machine, arguments.interpreter), upright), arguments.machine};
+  std::map<int, double> cutters;
+  ReadForJob out{moves_of(text, arguments, interpreter_of(arguments.machine, arguments.interpreter), cutters, upright),
+                 arguments.machine, cutters};
   const bool turns = std::ranges::any_of(upright.all(), wants_axes);
   if (turns && arguments.machine.empty())
     for (const char* preset : kFiveAxisPresets) {
       if (preset != kFiveAxisPresets.front() && !upright.has_errors()) break;
       Diagnostics tilted = diagnostics;
-      nc::Interpretation with_axes = moves_of(text, interpreter_of(preset, arguments.interpreter), tilted);
+      nc::Interpretation with_axes =
+          moves_of(text, arguments, interpreter_of(preset, arguments.interpreter), cutters, tilted);
       if (tilted.has_errors()) {
         if (upright.has_errors() && std::ranges::none_of(tilted.all(), wants_axes)) upright = std::move(tilted);
         continue;
@@ -153,7 +175,7 @@ ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, D
       kinematics::check_travel(machine::read_machine(preset, of_axes), text, with_axes, of_axes);
       if (of_axes.has_errors()) continue;
       diagnostics = std::move(tilted);
-      return {std::move(with_axes), preset};
+      return {std::move(with_axes), preset, cutters};
     }
   diagnostics = std::move(upright);
   return out;
@@ -168,7 +190,7 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   if (arguments.program.empty()) return write_machine(arguments, options);
   Diagnostics diagnostics;
   const nc::Program text = nc::read_program(SourceText::read(arguments.program), diagnostics);
-  const auto [moves, machine] = read_moves(arguments, text, diagnostics);
+  const auto [moves, machine, cutters] = read_moves(arguments, text, diagnostics);
   if (moves.moves.empty() && !diagnostics.has_errors())
     diagnostics.add(text.source.diagnostic(
         Severity::error, 0, "the program has no moves; one that cuts was expected for a job", "no-moves"));
@@ -177,7 +199,7 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
   settle(diagnostics, options);
   write_file(arguments.output,
              report::job_text({seen_from(arguments.program, arguments.output), seen_from(machine, arguments.output),
-                               summary, tools, text, moves, arguments.material, arguments.interpreter.inch}));
+                               summary, tools, text, moves, arguments.material, arguments.interpreter.inch, cutters}));
   if (options.quiet) return kDone;
   const auto cutting =
       std::count_if(summary.tools.begin(), summary.tools.end(), [](const auto& t) { return t.cutting_moves > 0; });

@@ -159,10 +159,6 @@ void read_reference_points(TomlTable table, Machine& machine) {
   table.finish();
 }
 
-}  // namespace
-
-namespace {
-
 SourceText text_of(const std::string& path) {
   if (!is_preset(path)) return SourceText::read(path);
   const MachinePreset* preset = find_machine_preset(path);

@@ -114,9 +114,11 @@ void mill_with_drills(const nc::Interpretation& moves, ToolsByNumber& tools) {
 }
 
 /// depth_mm: of the tool's lowest cut below the blank's top.
-std::string tool_text(const nc::ToolUse& use, const ToolProposal& known, const nc::Interpretation& moves,
-                      double depth_mm) {
-  GuessedTool guessed = guess_tool(known, use, moves, depth_mm);
+std::string tool_text(const nc::ToolUse& use, const ToolProposal& known, const JobProposal& proposal, double depth_mm) {
+  const auto cutter = proposal.cutters_mm.find(use.tool);
+  const bool by_cycles = cutter != proposal.cutters_mm.end();
+  GuessedTool guessed =
+      guess_tool(known, use, proposal.moves, depth_mm, by_cycles ? std::optional(cutter->second) : std::nullopt);
   const ToolProposal& tool = guessed.tool;
   const auto note = [&](const char* key, const char* text) {
     return std::ranges::find(guessed.assumed, key) != guessed.assumed.end() ? text : "";
@@ -133,7 +135,9 @@ std::string tool_text(const nc::ToolUse& use, const ToolProposal& known, const n
     out += profile;
   } else {
     const std::size_t end = profile.find('\n');
-    out += line(profile.substr(0, end), "CHECK: no comment gives it; by the distance between passes, else 10") +
+    out += line(profile.substr(0, end), by_cycles
+                                            ? "CHECK: no comment gives it; a usual one that fits the cycles"
+                                            : "CHECK: no comment gives it; by the distance between passes, else 10") +
            profile.substr(end + 1);
   }
   out += line(fmt::format("flutes = {}", *tool.flutes), note("flutes", "typical: count them"));
@@ -325,7 +329,7 @@ std::string job_text(const JobProposal& proposal) {
   for (const auto& use : proposal.summary.tools) {
     if (use.cutting_moves == 0) continue;
     const double top = stock ? stock->box.max_mm.z() : use.cutting.max_mm.z();
-    tools += tool_text(use, by_number[use.tool], proposal.moves, std::max(0.0, top - use.cutting.min_mm.z()));
+    tools += tool_text(use, by_number[use.tool], proposal, std::max(0.0, top - use.cutting.min_mm.z()));
     cutting += (cutting.empty() ? "" : ", ") + std::to_string(use.tool);
   }
   out += line(fmt::format("# operations = {{ tools = [{}] }}", cutting), "only these are simulated and compensated");

@@ -85,7 +85,7 @@ struct GuessedTool {
 
 inline constexpr double kUsualDiameter_mm = 10;  ///< of a cutter where nothing says it
 
-/// Fills what `known` leaves open.
+/// Fills what `known` leaves open. `cutter_mm`: see JobProposal::cutters_mm.
 ///
 /// Type: drill where the program only drills with it, else flat. Diameter: of the next standard size above 4/3 of the
 /// distance between parallel passes, the usual one where there are none. Overhang: for end mills and drills the overall
@@ -94,7 +94,7 @@ inline constexpr double kUsualDiameter_mm = 10;  ///< of a cutter where nothing 
 /// at most. Cutters of less than 6 mm have a shank of 6 mm and flutes as DIN 6527 L has them, longer where the cut is
 /// deeper. depth_mm: of the tool's lowest cut below the blank's top.
 GuessedTool guess_tool(machine::ToolProposal known, const nc::ToolUse& use, const nc::Interpretation& moves,
-                       double depth_mm);
+                       double depth_mm, std::optional<double> cutter_mm = {});
 
 struct JobProposal {
   std::string program;  ///< as the job is to name it
@@ -105,6 +105,8 @@ struct JobProposal {
   const nc::Interpretation& moves;
   std::string material{};      ///< a name that machine::find_material knows; empty: the commonest
   std::optional<bool> inch{};  ///< unit of a program that does not say it
+  /// By tool: the diameters with which cycles were read that ask for them, of cutters that nothing tells.
+  std::map<int, double> cutters_mm{};
 };
 
 /// job.toml text with comments; a job that runs as it stands. What a file says is a value with its source. What no file

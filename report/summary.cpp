@@ -146,10 +146,6 @@ std::vector<std::size_t> unsettled_lines(const simulate::SimulatedProgram& progr
   return lines;
 }
 
-}  // namespace
-
-namespace {
-
 void add_workpiece(const simulate::Prediction::DeflectionFigures& d, Json& j) {
   j["tool_deflection_um"] = figures_json(d.tool_um);
   j["part_deflection_um"] = figures_json(d.part_um);
@@ -201,10 +197,6 @@ void add_beyond_model(const simulate::SimulatedProgram& program, const simulate:
                                           {"limit", 1000 * p.cut.deflection_limit_mm}};
 }
 
-}  // namespace
-
-namespace {
-
 /// What the tooth passings of the chosen operations take on the machine, rapids left out.
 double simulated_time_s(std::span<const removal::Stamp> stamps) {
   double time_s = 0;
@@ -212,10 +204,6 @@ double simulated_time_s(std::span<const removal::Stamp> stamps) {
     if (!stamps[k].first) time_s += stamps[k].t_s - stamps[k - 1].t_s;
   return time_s;
 }
-
-}  // namespace
-
-namespace {
 
 Json chatter_json(const simulate::ChatterMargins& margins) {
   Json out = {{"operations", Json::array()}};

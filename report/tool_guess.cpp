@@ -157,7 +157,8 @@ void fill_overhang(GuessedTool& out, double depth_mm) {
 
 }  // namespace
 
-GuessedTool guess_tool(ToolProposal known, const nc::ToolUse& use, const nc::Interpretation& moves, double depth_mm) {
+GuessedTool guess_tool(ToolProposal known, const nc::ToolUse& use, const nc::Interpretation& moves, double depth_mm,
+                       std::optional<double> cutter_mm) {
   GuessedTool out;
   out.tool = std::move(known);
   ToolProposal& tool = out.tool;
@@ -166,7 +167,8 @@ GuessedTool guess_tool(ToolProposal known, const nc::ToolUse& use, const nc::Int
     out.assumed.emplace_back("type");
   }
   if (!tool.diameter_mm) {
-    tool.diameter_mm = standard_diameter_mm(tool.type == ToolType::drill ? 0 : step_over_mm(moves, use.tool));
+    tool.diameter_mm =
+        cutter_mm ? *cutter_mm : standard_diameter_mm(tool.type == ToolType::drill ? 0 : step_over_mm(moves, use.tool));
     out.assumed.emplace_back("diameter_mm");
   }
   fill_profile(tool, out.assumed);

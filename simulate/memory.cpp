@@ -98,10 +98,6 @@ constexpr double kBytesPerVoxel = 1.3 * sizeof(float);  // with masks, inner nod
 /// Voxels across the band, in whole leaves.
 double thickness(double band_voxels) { return 2 * band_voxels - 1 + kLeaf - 1; }
 
-}  // namespace
-
-namespace {
-
 double cut_area_of(const Job& job, const motion::PathStretch& path, const StockSize& stock) {
   const double cell = cell_of(job, path, stock);
   HeightMap map(stock, cell);

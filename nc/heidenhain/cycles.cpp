@@ -712,7 +712,7 @@ void Klartext::mill_bore() {
   const double radius = tool ? 0.5 * diameter - *tool : 0;
   if (tool && radius < 0)
     throw FormulaError(
-        cycle_.offset, "cycle",
+        cycle_.offset, "cutter-too-large",
         fmt::format("the hole of cycle 208 ({:.4f} mm) is smaller than the tool ({:.4f} mm)", diameter, 2 * *tool));
   const Vec3 middle = programmed();
   const auto go = [&](MoveKind kind, double height) {
@@ -838,7 +838,7 @@ void Klartext::mill_old_pocket() {
   pocket.half_mm[0] = round ? value(4) - *tool : 0.5 * std::abs(value(4)) - *tool;
   pocket.half_mm[1] = round ? pocket.half_mm[0] : 0.5 * std::abs(value(5)) - *tool;
   if (pocket.least_mm() < -1e-9 || pocket.half_mm[1] < -1e-9)
-    throw FormulaError(cycle_.offset, "cycle", "the pocket is smaller than the tool");
+    throw FormulaError(cycle_.offset, "cutter-too-large", "the pocket is smaller than the tool");
   constexpr double kOverlap = 1.4;  // of the radius: MP7430
   pocket.sideways_mm = kOverlap * *tool;
   pocket.sense = cycle_.sense;
@@ -895,7 +895,7 @@ void Klartext::mill_pocket() {
   pocket.half_mm[0] = 0.5 * std::abs(whole_x) - *tool;
   pocket.half_mm[1] = 0.5 * std::abs(whole_y) - *tool;
   if (pocket.least_mm() - side < -1e-9)
-    throw FormulaError(cycle_.offset, "cycle",
+    throw FormulaError(cycle_.offset, "cutter-too-large",
                        fmt::format("the pocket of cycle {} is smaller than the tool of {:.4f} mm and its allowance",
                                    number, 2 * *tool));
   if (!pocket.round) {

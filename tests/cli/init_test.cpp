@@ -244,6 +244,32 @@ TEST(Init, GuessesWhatNoCommentSays) {
   EXPECT_NE(job.find("\noverhang_mm = 40.0 "), std::string::npos) << job;  // not four diameters
 }
 
+/// A pocket of 9 mm: the usual cutter of 10 mm does not fit, and the one of a comment counts before any other.
+TEST(Init, ProposesCuttersThatFitThePocketsOfCycles) {
+  const TempFolder folder;
+  const auto program = [](const char* comment) {
+    return fmt::format(
+        "BEGIN PGM P MM\nBLK FORM 0.1 Z X-20 Y-20 Z-10\nBLK FORM 0.2 X+20 Y+20 Z+0\n{}TOOL CALL 3 Z S6000\n"
+        "L Z+50 R0 FMAX M3\nCYCL DEF 251 Q215=0 Q218=9 Q219=9 Q220=2 Q368=0 Q224=0 Q367=0 Q207=300 Q351=1 Q201=-2 "
+        "Q202=2 Q369=0 Q206=100 Q338=0 Q200=2 Q203=0 Q204=50 Q370=1 Q366=0 Q385=300\nL X+0 Y+0 FMAX M99\n"
+        "L Z+50 FMAX M30\nEND PGM P MM\n",
+        comment);
+  };
+  folder.write("p.h", program(""));
+  folder.write("told.h", program("; T3 D=5 - FLAT END MILL\n"));
+  ASSERT_EQ(run_camber(folder, "-q init p.h -o p.toml").status, 0);
+  ASSERT_EQ(run_camber(folder, "-q init told.h -o told.toml").status, 0);
+  EXPECT_NE(
+      tests::file_text(folder / "p.toml")
+          .find("\ndiameter_mm = 8.0                 # CHECK: no comment gives it; a usual one that fits the cycles\n"),
+      std::string::npos)
+      << tests::file_text(folder / "p.toml");
+  EXPECT_NE(tests::file_text(folder / "told.toml").find("\ndiameter_mm = 5.0\n"), std::string::npos)
+      << tests::file_text(folder / "told.toml");
+  for (const char* job : {"p.toml", "told.toml"})
+    EXPECT_EQ(run_camber(folder, fmt::format("check --job {}", job)).status, 0) << job;
+}
+
 TEST(Init, SaysWhichUnitTheProgramWasReadIn) {
   const TempFolder folder;
   folder.write("p.nc", "T1 M6 (D=0.25 - FLAT END MILL)\nS3000 M3\nG0 X0 Y0 Z1\nG1 Z-0.1 F10\nX1.\nM30\n");

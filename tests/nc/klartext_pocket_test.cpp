@@ -151,9 +151,9 @@ TEST(KlartextPocket, SaysWhatIsWrong) {
     }
     return out;
   };
-  EXPECT_EQ(
-      said({.round = true, .length = 7}),
-      "p.h:22:1: error: the pocket of cycle 252 is smaller than the tool of 8.0000 mm and its allowance [cycle]\n");
+  EXPECT_EQ(said({.round = true, .length = 7}),
+            "p.h:22:1: error: the pocket of cycle 252 is smaller than the tool of 8.0000 mm and its allowance "
+            "[cutter-too-large]\n");
   EXPECT_EQ(said({.overlap = 2}),
             "p.h:26:1: error: an overlap Q370 of 2; greater than 0 and less than 2 was expected [cycle]\n");
 }
