@@ -64,6 +64,15 @@ const over = (page, timeout = 240000) => page.waitForFunction(() => {
   return states.length && !states.some(s => s === 'queued' || s === 'running');
 }, null, { timeout });
 
+// The frame with the report of a run of this command, once it has drawn itself: an iframe is in the page before it has its address.
+async function shownReport(page, command) {
+  const find = () => page.frames().find(f => f.url().includes(`/${command}/report.html`));
+  for (let k = 0; k < 1200 && !find(); k++) await page.waitForTimeout(50);
+  expect(find(), `no report of ${command} is shown`);
+  await find().waitForFunction(() => document.documentElement.dataset.ready === 'yes');
+  return find();
+}
+
 async function setField(page, path, value) {
   const before = await checks(page);
   await page.locator(`[data-path="${path}"]`).fill(value);
@@ -133,9 +142,7 @@ const CHECKS = {
     await page.waitForFunction(() => document.documentElement.dataset.runs);
     await over(page);
     await tab(page, 'results');
-    await page.waitForSelector('iframe.report');
-    const report = page.frames().find(f => /report\.html/.test(f.url()));
-    await report.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
+    const report = await shownReport(page, 'compensate');
     expect(await report.locator('#scene canvas').count() === 1, 'the report has no error map');
     await report.locator('#scene').scrollIntoViewIfNeeded();
     await picture(page, 'workbench-results.png');
@@ -310,9 +317,7 @@ const CHECKS = {
     await page.waitForFunction(() => document.documentElement.dataset.runs);
     await over(page);
     await tab(page, 'results');
-    await page.waitForSelector('iframe.report');
-    const report = page.frames().find(f => /report\.html/.test(f.url()));
-    await report.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
+    const report = await shownReport(page, 'compensate');
     const scene = report.locator('#scene'), canvas = scene.locator('canvas');
     await scene.scrollIntoViewIfNeeded();
     await painted(page);
@@ -350,12 +355,7 @@ const CHECKS = {
     await page.getByLabel('Beside it').selectOption('time');
     await page.waitForFunction(() => document.querySelectorAll('iframe.report').length === 2);
     await page.waitForFunction(() => /µm/.test(document.querySelector('.job[aria-current=true] .figures').textContent));
-    for (const name of ['predict', 'time']) {
-      const find = () => page.frames().find(f => f.url().includes(`/${name}/report.html`));
-      for (let k = 0; k < 100 && !find(); k++) await page.waitForTimeout(50);
-      const frame = find();
-      await frame.waitForFunction(() => document.documentElement.dataset.ready === 'yes');
-    }
+    for (const name of ['predict', 'time']) await shownReport(page, name);
     await picture(page, 'workbench-shop.png');
   },
 
