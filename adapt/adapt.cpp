@@ -99,7 +99,7 @@ void Adapter::find_time_limit(AdaptResult& out) {
   limits_ = scaled(limits_, high);
 }
 
-/// Of the candidate, in the job's coupling.
+/// Cuts the candidate in the job's coupling and returns its loads.
 ObservedLoads Adapter::predict(const FeedCandidate& candidate, std::vector<std::string>& doubts) {
   ++predictions_;
   const auto show = simulate::progress_of(options_.progress, predictions_ == 1 ? "checking" : "checking again");

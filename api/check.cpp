@@ -205,7 +205,7 @@ void write_path(const std::string& path, const nc::Program& text, const nc::Inte
   report::write_path_arrays(path, picture, in_part);
 }
 
-/// What cannot be read is none: the check says why.
+/// Writes the meshes of a job. One that cannot be read is left out: the check says why.
 void write_meshes(const machine::Job& job, const std::string& name) {
   const auto write = [&](const char* end, const auto& read) {
     std::string text;

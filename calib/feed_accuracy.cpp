@@ -20,7 +20,7 @@ constexpr double kMoves = 2e-3;  // mm or degrees between two samples
 constexpr double kCornerS = 0.02;
 constexpr double kAtFeed = 0.98;  // of the programmed feed
 
-/// What trace and model have in common.
+/// Samples that trace and model have in common.
 struct Record {
   double period_s = 0;
   std::vector<Vec3> command_mm, actual_mm;

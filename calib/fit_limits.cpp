@@ -260,7 +260,7 @@ bool search(const std::vector<TimedLines>& data, const Machine& base, const std:
   return searches < kMaxSearches;
 }
 
-/// What each residual of the fitted parts is of, in their order.
+/// One residual of the fitted parts, in their order: its part, and the scale of its time.
 struct Row {
   int group = 0;
   double scale_s = 0, step_s = 0;

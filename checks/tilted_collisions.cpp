@@ -34,7 +34,7 @@ void append(std::vector<ToolPose>& poses, const ToolPose& pose, const ToolSurfac
   poses.insert(poses.end(), more.begin(), more.end());
 }
 
-/// As the control commands them (feedmodel::predict_joints).
+/// Places the tools along the rapids by the joints that the control commands (feedmodel::predict_joints).
 void pose_by_joints(const machine::Job& job, const motion::SimulatedProgram& program, const Surfaces& tools,
                     std::vector<PosedRapid>& rapids) {
   constexpr double kClose_mm = 0.5 * kCollisionStep_mm;

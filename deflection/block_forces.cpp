@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kSteps = EnvelopeBlocks::kSteps;
 
-/// Of four chips of one ring, N, as edge_force has them.
+/// Forces of four chips of one ring, N, in the components of edge_force.
 struct EdgeForces {
   std::array<double, kSteps> tangential, radial, axial;
 };
@@ -63,7 +63,7 @@ void add_four(const EdgeForces& e, const Sums& s) {
   }
 }
 
-/// Of an affine law without a ramp.
+/// Writes to `e` the forces by an affine law (K h + K_e) without an edge ramp.
 inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, const float* h,
                           const std::uint8_t* cut_255, double width, EdgeForces& e) {
   const double width_255 = width / 255;
@@ -77,7 +77,7 @@ inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, co
 
 }  // namespace
 
-/// What an end adds to the sums that hold every sample whole, drawn in a straight line to the next step.
+/// Adds the end of a chip to the sums, which count every sample whole: the chip fades linearly to the next step.
 void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm,
                              std::span<double> fine_N) const {
   const auto& ring = envelope_.rings[static_cast<std::size_t>(e.ring)];

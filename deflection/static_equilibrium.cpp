@@ -141,7 +141,7 @@ StaticEquilibrium::Element StaticEquilibrium::element(const EdgeElement& f, cons
   return e;
 }
 
-/// What follows from deflection_.
+/// Derives from deflection_, at every node, the motion since the reading and the difference of the steps beside it.
 void StaticEquilibrium::place_deflections() {
   const std::size_t row = 2 * nodes_;
   for (std::size_t m = 0; m < steps_; ++m) {
