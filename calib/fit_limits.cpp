@@ -87,7 +87,7 @@ LimitParameter speed_difference(const char* name) {
           .fitted = {}};
 }
 
-/// By the lag in logged times.
+/// Adds the lags that logged times show.
 template <int axis>
 LimitParameter position_gain(const char* name) {
   return {.name = name,

@@ -74,8 +74,7 @@ PeriodMap::ModeStep PeriodMap::step_of(const Mode& mode) const {
   return {mode.direction, e, constant - ramp, ramp};
 }
 
-/// Evaluates the integrals of all slices for a tooth whose tip is at `angle`. Where both ends of a slice lag alike, one
-/// value stands for both.
+/// Evaluates the integrals of all slices for a tooth whose tip is at `angle`; without lag both ends share one value.
 void PeriodMap::integrate_to(double angle, double depth, std::vector<SliceIntegrals>& out) const {
   out.resize(integrals_.size());
   for (std::size_t i = 0; i < integrals_.size(); ++i) {

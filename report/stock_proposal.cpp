@@ -61,8 +61,7 @@ struct Rectangle {
   bool operator==(const Rectangle&) const = default;
 };
 
-/// The heights that the program has cut so far, and how high the blank may stand in each cell without a rapid touching
-/// it.
+/// Heights that the program has cut, and how high the blank may stand in each cell without a rapid touching it.
 class Map {
  public:
   Map(const Vec3& low, const Vec3& high) : low_(low) {
@@ -310,8 +309,7 @@ class Proposer {
     return lowest;
   }
 
-  /// Returns the height of the highest cutting move across, by its lower end; with plunges alone the depth of the
-  /// deepest.
+  /// Returns the height of the highest cutting move across, by its lower end; with plunges alone the deepest.
   double highest_pass_mm() const {
     const double travel = travel_height_mm();
     double pass = -kNever, lowest = kNever;

@@ -213,8 +213,7 @@ Bodies join_bodies(const std::vector<Place>& places, const std::vector<Vec3>& mi
   return out;
 }
 
-/// Returns the inverse of a symmetric block. Where it is singular (turns of a single node, or of a line of them),
-/// directions without stiffness get that of the whole block first.
+/// Returns the inverse of a symmetric block, made regular first where turns of a node, or of a line, have no stiffness.
 template <int kSize>
 Eigen::Matrix<double, kSize, kSize> inverse_of(Eigen::Matrix<double, kSize, kSize> m) {
   constexpr double kTiny = 1e-9;
