@@ -87,7 +87,7 @@ LimitParameter speed_difference(const char* name) {
           .fitted = {}};
 }
 
-/// Adds the lags that logged times show.
+/// Describes the position gain of an axis as a parameter: logged times determine it by the lag.
 template <int axis>
 LimitParameter position_gain(const char* name) {
   return {.name = name,
