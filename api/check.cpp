@@ -123,7 +123,7 @@ std::optional<double> add_what_predict_says(machine::Job job, const std::string&
   return memory_bytes;
 }
 
-/// By line and column.
+/// Sorts diagnostics by line and column.
 std::vector<Diagnostic> in_order(std::vector<Diagnostic> list) {
   std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
@@ -194,7 +194,7 @@ report::CheckPicture picture_of(const nc::Interpretation& moves, const machine::
   return picture;
 }
 
-/// On the part where rotary axes turn on a known machine, else X, Y and Z.
+/// Writes the path: that on the part where rotary axes of a known machine turn, else X, Y and Z.
 void write_path(const std::string& path, const nc::Program& text, const nc::Interpretation& moves,
                 const machine::Machine* machine) {
   report::PathPicture picture;

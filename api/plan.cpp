@@ -105,7 +105,7 @@ Programs make_programs(const plan::PlanInput& input, plan::SetupPlan& setup, con
   return out;
 }
 
-/// By the times of the programs.
+/// Returns the index of the plan that is best by the times of the programs.
 std::size_t best_program(const plan::SetupPlan& setup) {
   std::vector<plan::PlanFigures> figures;
   for (const plan::PlannedDivision& p : setup.plans)

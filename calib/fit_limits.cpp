@@ -445,7 +445,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
 
 namespace {
 
-/// Where the control counts on: the start of a segment, or the middle of its overlap with the one before it.
+/// Returns the time of the line's change: the start of a segment, or the middle of its overlap with the one before.
 double boundary_s(double before_end_s, const feedmodel::SegmentTime& segment) {
   return segment.overlapped && segment.start_s < before_end_s ? (before_end_s + segment.start_s) / 2 : segment.start_s;
 }

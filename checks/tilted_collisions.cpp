@@ -167,7 +167,7 @@ class Search {
       stock_->sweep_to(k);
   }
 
-  /// Those before stamp k.
+  /// Checks the rapids before stamp k.
   void look_at_rapids(std::size_t k) {
     for (; next_rapid_ < rapids_.size() && rapids_[next_rapid_].check.before_stamp <= k; ++next_rapid_) {
       const PosedRapid& rapid = rapids_[next_rapid_];

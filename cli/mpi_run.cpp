@@ -195,7 +195,7 @@ class RankParts : public distribute::PartStore {
     merging_ = true;
     parts_.clear();
   }
-  /// On rank 0: there is nothing more to ask for. Returns `status`.
+  /// Ends the merge on rank 0: tells the others that nothing more is asked for. Returns `status`.
   int end_merge(int status) {
     const int end[kWanted] = {kEnd, status};
     for (int r = 1; r < static_cast<int>(sections_); ++r) MPI_Send(end, kWanted, MPI_INT, r, kRequest, MPI_COMM_WORLD);

@@ -24,7 +24,7 @@ struct EdgeForces {
   std::array<double, kSteps> tangential, radial, axial;
 };
 
-/// Where the four chips stand and what their forces are added to.
+/// Places of four chips, and the sums that their forces are added to.
 struct Sums {
   const float *cosine_phi, *sine_phi;
   double sine, cosine;  ///< of the ring's normal angle
@@ -169,7 +169,7 @@ void draw_between_steps(const double* x, const double* y, std::size_t count, flo
   }
 }
 
-/// One row of values, with straight lines between the steps.
+/// Draws a row of values with straight lines between the steps.
 void draw_row(const double* x, std::size_t count, double* fine) {
   for (std::size_t m = 0; m < count; ++m) {
     const double next = x[m + 1 < count ? m + 1 : 0];
@@ -208,7 +208,7 @@ class PassSums {
     values_ = room.data();
   }
   std::size_t row() const { return row_; }
-  /// From the pitch's first step on.
+  /// Row i from the first step of the pitch on.
   double* of(std::size_t i) const { return values_ + i * row_ + kAside; }
   Sums at(int step) const {
     Sums s{};

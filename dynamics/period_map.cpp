@@ -19,7 +19,7 @@ int interval_count(std::span<const Mode> modes, const Cut& cut, double period_s,
       {kLeast * period_rad / cut.pitch_rad.front(), per_period * highest * period_s, kPerArc * period_rad / arc})));
 }
 
-/// By which the ends of a slice come later than the tip, rad.
+/// Returns the angles by which the ends of a slice come later than the tip, rad.
 std::pair<double, double> lags_of(const Cut& cut, const CutSlice& s, double depth) {
   return {cut.lag_rad_per_mm * s.from * depth, cut.lag_rad_per_mm * s.to * depth};
 }

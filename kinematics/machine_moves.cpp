@@ -146,7 +146,7 @@ class Placer {
     }
   }
 
-  /// To where an axis is that the program has not placed.
+  /// Shifts the arc so that it starts at `start_mm`, where an axis is that the program has not placed.
   void shift_arc(nc::Move& move, const Vec3& start_mm) {
     const Vec3 by_mm = start_mm - move.start_mm;
     program_.arcs[move.arc].center_mm += by_mm;
