@@ -62,7 +62,7 @@ void Adapter::observe_given() {
   peaks_before_ = peaks_of(loads_, limits_);
 }
 
-/// Where chatter is the only limit: speeds are changed, and feeds with them, but no feed by load.
+/// Changes speeds, and feeds with them, but no feed by load: chatter is the only limit.
 void Adapter::keep_feeds(AdaptResult& out) {
   chooser_.emplace(job_, given(), *cells_);
   std::vector<double> feeds;
@@ -99,7 +99,7 @@ void Adapter::find_time_limit(AdaptResult& out) {
   limits_ = scaled(limits_, high);
 }
 
-/// Of the candidate, in the job's coupling.
+/// Cuts the candidate in the job's coupling and returns its loads.
 ObservedLoads Adapter::predict(const FeedCandidate& candidate, std::vector<std::string>& doubts) {
   ++predictions_;
   const auto show = simulate::progress_of(options_.progress, predictions_ == 1 ? "checking" : "checking again");
@@ -160,8 +160,8 @@ void Adapter::correct(AdaptResult& out) {
   loads_ = best_loads_;
 }
 
-/// To what the loads now observed allow, in the cells over a limit and beside them: passings fall elsewhere at another
-/// feed.
+/// Lowers feeds to what the observed loads allow, in the cells over a limit and beside them: at another feed passings
+/// fall elsewhere.
 void Adapter::lower_feeds(const Verdict& verdict, std::span<const double> now, std::vector<double>& feeds) const {
   for (const auto& [from, end] : cells_->chains())
     for (std::size_t i = from; i < end; ++i) {

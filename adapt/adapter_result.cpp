@@ -8,7 +8,7 @@
 
 namespace camber::adapt {
 
-/// Of the emitted lines: blocks of the given program, see nc::Emission.
+/// Returns, for each emitted line, the block of the given program that it stands for (nc::Emission).
 std::vector<std::uint32_t> Adapter::original_blocks() const {
   std::vector<std::uint32_t> out = best_->emission.block_of_line;
   if (stable_)

@@ -18,7 +18,7 @@
 namespace camber::adapt {
 namespace {
 
-/// What is known to be refused is refused before the long work.
+/// Refuses a job that cannot be adapted before the long work begins.
 void check_given(const machine::Job& job, const simulate::SimulatedProgram& program, Diagnostics& diagnostics) {
   plausibility::check_program(job, program, diagnostics);
   if (job.adapt->limits.chatter_margin)

@@ -90,8 +90,8 @@ class SpeedWriter {
         ignored);
   }
 
-  /// Of the cuts whose feed does not change with the speed by itself (G95). Nothing: a cut has another speed than is
-  /// wanted.
+  /// Returns edits of the F words of cuts whose feed does not follow the speed by itself, as it does under G95; nothing
+  /// where a cut has another speed than is wanted.
   std::optional<std::vector<nc::MoveEdit>> feed_edits(std::span<const double> rpm,
                                                       const nc::Interpretation& there) const {
     constexpr double kSameFeed = 5e-4;

@@ -123,7 +123,7 @@ std::optional<double> add_what_predict_says(machine::Job job, const std::string&
   return memory_bytes;
 }
 
-/// By line and column.
+/// Sorts diagnostics by line and column.
 std::vector<Diagnostic> in_order(std::vector<Diagnostic> list) {
   std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
@@ -194,7 +194,7 @@ report::CheckPicture picture_of(const nc::Interpretation& moves, const machine::
   return picture;
 }
 
-/// On the part where rotary axes turn on a known machine, else X, Y and Z.
+/// Writes the path: that on the part where rotary axes of a known machine turn, else X, Y and Z.
 void write_path(const std::string& path, const nc::Program& text, const nc::Interpretation& moves,
                 const machine::Machine* machine) {
   report::PathPicture picture;
@@ -205,7 +205,7 @@ void write_path(const std::string& path, const nc::Program& text, const nc::Inte
   report::write_path_arrays(path, picture, in_part);
 }
 
-/// What cannot be read is none: the check says why.
+/// Writes the meshes of a job. One that cannot be read is left out: the check says why.
 void write_meshes(const machine::Job& job, const std::string& name) {
   const auto write = [&](const char* end, const auto& read) {
     std::string text;

@@ -121,7 +121,7 @@ std::vector<CompensatedPoint> points_of(const CompensationResult& c) {
   return out;
 }
 
-/// All but diagnostics and json.
+/// Returns the result without diagnostics and json.
 CompensateResult result_of(const CompensationResult& c, const machine::CompensationSettings& asked) {
   const report::VerdictText verdict = report::verdict_text(c, asked);
   CompensateResult out{.program = c.emitted.text,

@@ -65,7 +65,7 @@ calib::StretchRun& stretch_run(FeedRuns& runs, const std::string& name, const nc
 constexpr double kLogPieceSamples = 30;  // of a position log in a piece whose ends are known to a fraction of one
 constexpr double kPieceS = 0.4, kPieceSamples = 0.8;  // of a trace whose samples are too few to show ramps
 
-/// By the lines that a log names; where it names none, or too few, by its positions.
+/// Times the stretches by the lines that a log names; where it names none, or too few, by its positions.
 std::vector<calib::TimedStretch> log_times(const calib::MachineLog& log, const nc::Interpretation& program) {
   auto timed = calib::logged_stretches(log, calib::feed_stretches(program));
   if (!timed.empty() || !calib::has_positions(log)) return timed;

@@ -77,7 +77,7 @@ void add_copy_job(const plan::PlanInput& input, const plan::SetupPlan& setup, co
 
 using Programs = std::vector<std::optional<plan::PlanProgram>>;  ///< programs of the plans of one set-up
 
-/// Of the plan that is taken, or of all that are complete; the times go to the plans.
+/// Makes the programs of the plan that is taken, with `all` of every complete plan, and enters their times there.
 Programs make_programs(const plan::PlanInput& input, plan::SetupPlan& setup, const std::string& end, bool all,
                        Diagnostics& diagnostics) {
   Programs out(setup.plans.size());
@@ -105,7 +105,7 @@ Programs make_programs(const plan::PlanInput& input, plan::SetupPlan& setup, con
   return out;
 }
 
-/// By the times of the programs.
+/// Returns the index of the plan that is best by the times of the programs.
 std::size_t best_program(const plan::SetupPlan& setup) {
   std::vector<plan::PlanFigures> figures;
   for (const plan::PlannedDivision& p : setup.plans)

@@ -87,7 +87,7 @@ void read_again(const PostureCommand& command, report::PosturedProgram& program,
   api::check_new_program(job.machine, &job, *command.text, moves, program.postured.block_of_line, diagnostics);
 }
 
-/// From that of the job down to the least that is tried; without a step, that of the job.
+/// Lists the overhangs to try, from the job's down to the least; empty without a step.
 std::vector<double> overhangs_of(const machine::Job& job, int number, double step_mm) {
   const auto tool = job.tools.find(number);
   if (tool == job.tools.end() || step_mm <= 0) return {};

@@ -62,7 +62,7 @@ repath::Rectangle raster_boundary(const RasterOptions& asked, const std::string&
   return {out.min.cwiseMax(low), out.max.cwiseMin(high)};
 }
 
-/// Nothing for a field of another job: where its stock ends is not known here.
+/// Returns the height of the top of the stock; nothing for a field of another job, whose top is not known here.
 std::optional<double> top_of_stock_mm(const machine::StockDescription& stock) {
   if (stock.box) return stock.box->max_mm.z();
   if (stock.cylinder) return stock.cylinder->base_mm.z() + stock.cylinder->height_mm;
@@ -72,7 +72,7 @@ std::optional<double> top_of_stock_mm(const machine::StockDescription& stock) {
   return top;
 }
 
-/// Where feed begins: in a stock that is left all over alike a little above it, else above the blank.
+/// Describes the program of a raster. Feed begins a little above a stock of even allowance, else above the blank.
 repath::RasterProgram raster_program(const RasterOptions& asked, const machine::Job& job, const machine::Tool& tool,
                                      double part_top_mm, int decimals) {
   repath::RasterProgram out{.dialect = kinematics::dialect_of(job.machine.control.kind),

@@ -105,7 +105,7 @@ nc::Interpretation timed_moves(const nc::Program& program, const machine::Machin
   return moves;
 }
 
-/// Of `path`; of the given program where that is it, which is read already.
+/// Returns the moves of the program at `path`; the given program is not read a second time.
 nc::Interpretation read_moves(const std::string& path, const machine::Machine& machine, const TimeAsked& asked,
                               Diagnostics& diagnostics) {
   const Program::Impl& given = asked.program.impl();

@@ -30,14 +30,14 @@ double entry_of(const std::string& path, const std::string& word) {
   return 0;
 }
 
-/// What a control group still allows. Files in its cache are given up when memory is needed.
+/// Returns the memory that a control group still allows. Files in its cache are given up when memory is needed.
 double left_in_group(const std::string& folder, const char* limit, const char* used) {
   const auto max = number_in(folder + limit), now = number_in(folder + used);
   if (!max || !now) return kUnknown;
   return std::max(0.0, *max - *now + entry_of(folder + "/memory.stat", "inactive_file "));
 }
 
-/// Of the process's groups (version 2 and 1) and those above them.
+/// Returns the least that the control groups of the process (versions 2 and 1) and those above them still allow.
 double left_in_groups() {
   double left = kUnknown;
   std::ifstream in("/proc/self/cgroup");

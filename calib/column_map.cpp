@@ -104,7 +104,7 @@ class Reader {
     assert(std::ranges::adjacent_find(channel.t_s, std::greater_equal{}) == channel.t_s.end());
   }
 
-  /// Nothing before the first sample, and for positions after the last.
+  /// Returns the value at a time; nothing before the first sample and, of positions, after the last.
   std::optional<double> at(double t_s) {
     while (next_ < channel_.t_s.size() && channel_.t_s[next_] <= t_s) ++next_;
     if (next_ == 0) return std::nullopt;

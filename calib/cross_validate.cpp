@@ -17,7 +17,7 @@ Machine stopping(Machine m) {
   return m;
 }
 
-/// In degrees.
+/// Returns the rms error of the model of a rotary drive, degrees.
 double rotary_drive_rms(const ServoTrace& rotary, int axis, const machine::RotaryAxis& model) {
   machine::Axis drive;
   drive.position_gain_per_s = model.position_gain_per_s;

@@ -20,7 +20,7 @@ constexpr double kMoves = 2e-3;  // mm or degrees between two samples
 constexpr double kCornerS = 0.02;
 constexpr double kAtFeed = 0.98;  // of the programmed feed
 
-/// What trace and model have in common.
+/// Samples that trace and model have in common.
 struct Record {
   double period_s = 0;
   std::vector<Vec3> command_mm, actual_mm;
@@ -136,7 +136,7 @@ Vec3 velocity_at(const Record& r, const Window& w, std::size_t k, std::size_t ha
   return (r.actual_mm[to] - r.actual_mm[from]) / (static_cast<double>(to - from) * r.period_s);
 }
 
-/// At stations that lie evenly over the fraction of the length that the axes really went.
+/// Speed at stations that lie evenly over the fraction of the length that the axes really went.
 struct Profile {
   std::vector<double> speed;
   std::vector<Vec3> velocity;
@@ -165,7 +165,7 @@ Profile profile_of(const Record& r, const Window& w, const FeedAccuracyOptions& 
 
 // --- residuals by kind and axis ---------------------------------------------------------------------------------
 
-/// By the 1-based number of a line.
+/// Marks the lines with arcs, by their 1-based numbers.
 std::vector<char> arc_lines(const nc::Interpretation& program) {
   std::vector<char> arcs;
   for (const nc::Move& move : program.moves) {

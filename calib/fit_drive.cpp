@@ -447,7 +447,7 @@ Candidate solve(const std::vector<Slice>& slices, const Model& model, const Numb
   return c;
 }
 
-/// From both starts; the better end.
+/// Solves from a linear fit and from the simpler model before; returns the better end.
 Candidate solve_from_both(const std::vector<Slice>& slices, const Model& model, const Candidate& before) {
   Candidate best = solve(slices, model, linear_start(slices, model));
   if (!std::isfinite(before.held_out_rms)) return best;

@@ -396,7 +396,7 @@ void set_waits(FitFeedResult& result, const std::vector<TimedLines>& data, doubl
       {"control.in_position_mm", machine::kNoLimit, "mm", std::nullopt, "the traces do not wait at exact stops", true});
 }
 
-/// Which program of camber protocol has what a parameter shows in.
+/// Says which program of camber protocol would determine a parameter.
 std::string_view what_tells(std::string_view name) {
   if (name.ends_with("position_gain_per_s")) return "record commanded and actual positions";
   if (name.ends_with("block_time_ms")) return "run the saturation program of camber protocol";
@@ -409,7 +409,7 @@ std::string_view what_tells(std::string_view name) {
   return "run the polygon programs of camber protocol in all planes";
 }
 
-/// Which source determined a parameter, where there are two.
+/// Says which of two sources determined a parameter, traces or logged times.
 std::string source_of(const LimitParameter& p) {
   constexpr double kMax = 0.9;
   if (p.logged_fraction > kMax) return "from the logged times";
@@ -438,7 +438,7 @@ void add_limits(FitFeedResult& result, const LimitFit& fit, const Machine& start
   }
 }
 
-/// What LinuxCNC's rounding takes from a list of values.
+/// Adds the parameters of LinuxCNC's rounding that are chosen from a list of values.
 void add_listed(FitFeedResult& result) {
   const machine::Control& control = result.machine.control;
   result.parameters.push_back({"control.lookahead_blocks", static_cast<double>(control.lookahead_blocks), "1",
@@ -469,8 +469,8 @@ void add_jerk(FitFeedResult& result, const FittedValue& window_s) {
   }
 }
 
-/// What lies between the plan and the traced commands: a ramp of each axis, or, where the rise of the acceleration
-/// from rest agrees with it, a limit of jerk.
+/// Adds the smoothing between the plan and the traced commands: a ramp of each axis, or, where the rise of the
+/// acceleration from rest agrees with it, a limit of jerk.
 void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
                    const std::vector<const ServoTrace*>& traces) {
   const auto rise_s = smoothing_time_s(traces);
@@ -517,7 +517,7 @@ std::optional<TimePromise> time_promise(const std::vector<double>& true_s, const
 
 namespace {
 
-/// What the start file had, by the keys of the machine file.
+/// Enters the value of the start file beside each written parameter that has changed.
 void add_changes(std::vector<FitParameter>& parameters, const Machine& start) {
   for (FitParameter& p : parameters)
     if (p.written)

@@ -72,7 +72,7 @@ Solution solve(const ForceProblem& problem, const Eigen::VectorXd& start) {
   return out;
 }
 
-/// All feeds per tooth, or nothing where they differ.
+/// Returns the feed per tooth that all cuts share; nothing where they differ by more than 2 %.
 std::optional<double> only_feed_mm(const std::vector<MeasuredLog>& logs) {
   const double first = logs.front().cuts.front().cut.feed_per_tooth_mm;
   for (const auto& log : logs)

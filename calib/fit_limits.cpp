@@ -87,7 +87,7 @@ LimitParameter speed_difference(const char* name) {
           .fitted = {}};
 }
 
-/// By the lag in logged times.
+/// Describes the position gain of an axis as a parameter: logged times determine it by the lag.
 template <int axis>
 LimitParameter position_gain(const char* name) {
   return {.name = name,
@@ -260,7 +260,7 @@ bool search(const std::vector<TimedLines>& data, const Machine& base, const std:
   return searches < kMaxSearches;
 }
 
-/// What each residual of the fitted parts is of, in their order.
+/// One residual of the fitted parts, in their order: its part, and the scale of its time.
 struct Row {
   int group = 0;
   double scale_s = 0, step_s = 0;
@@ -445,7 +445,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
 
 namespace {
 
-/// Where the control counts on: the start of a segment, or the middle of its overlap with the one before it.
+/// Returns the time of the line's change: the start of a segment, or the middle of its overlap with the one before.
 double boundary_s(double before_end_s, const feedmodel::SegmentTime& segment) {
   return segment.overlapped && segment.start_s < before_end_s ? (before_end_s + segment.start_s) / 2 : segment.start_s;
 }

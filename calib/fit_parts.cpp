@@ -224,7 +224,7 @@ class Fit {
     }
   }
 
-  /// By the unknowns of the motion, or by those of forces and stiffness.
+  /// Finds the slopes of a job's sizes by the unknowns of the motion, or by those of forces and stiffness.
   void find_slopes_of(std::size_t j, bool motion) {
     std::optional<Sizes> here;
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {

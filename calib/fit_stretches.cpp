@@ -250,7 +250,7 @@ std::vector<double> measured_s(const Data& data) {
   return times;
 }
 
-/// One law, fitted to all and to all but each fold.
+/// A corner law, fitted to all stretches and to all but each fold.
 struct Trial {
   StretchLaw law;
   Machine machine;

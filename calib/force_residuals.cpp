@@ -156,7 +156,7 @@ using machine::Material;
 constexpr std::size_t kLinear = 6;
 using Linear = Eigen::Matrix<double, 6, 1>;
 
-/// What one unit of each linear coefficient makes of a cut: rows as in the residuals, all three components.
+/// Returns the forces of a cut by one unit of each linear coefficient: rows as in the residuals, all three components.
 Eigen::MatrixXd basis(const deflection::SteadyCutModel& model, std::size_t steps) {
   const auto& all = machine::description(machine::ForceLaw::linear).fitted;
   Eigen::MatrixXd out(3 * static_cast<Eigen::Index>(std::max<std::size_t>(1, steps)), kLinear);

@@ -16,7 +16,7 @@ namespace {
 using machine::Job;
 using machine::Tool;
 
-/// What a clamping is known by: the same tool table is the same clamping.
+/// Returns the key of a clamping: jobs whose tool tables are alike share it.
 std::string clamping_key(const Tool& t) {
   return fmt::format("{} {:.6g} {:.6g} {:.6g} {:.6g}", t.number, t.diameter_mm, t.overhang_mm,
                      t.flute_length_mm.value_or(0), t.runout_mm);

@@ -169,7 +169,7 @@ struct Extent {
   }
 };
 
-/// What takes the extent of the trace to that of the moves, where their sizes agree.
+/// Returns the offset that takes the extent of the trace to that of the moves, where their sizes agree.
 std::optional<Vec3> offset_of_extents(const ServoTrace& trace, const nc::Interpretation& program, bool with_rapids) {
   Extent of_trace, of_program;
   for (std::size_t k = 0; k < trace.size(); ++k) of_trace.add(position(trace, k));

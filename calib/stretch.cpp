@@ -23,7 +23,7 @@ constexpr double kMedianFraction = 1.253;     // error of a median over that of 
 
 bool is_feed(const nc::Move& move) { return move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc; }
 
-/// What copies, turned and mirrored ones too, have in common: the lengths of the moves and the angles between them.
+/// The shape of a stretch, the same for turned and mirrored copies: lengths of the moves and angles between them.
 struct Shape {
   std::vector<double> length_mm, corner_rad;  ///< sorted
   double programmed_s = 0;

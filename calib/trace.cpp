@@ -17,7 +17,7 @@ constexpr double kGapPeriods = 1.5;  // more than this between two samples is a 
 constexpr std::size_t kGapsShown = 5;
 constexpr double kMaxLine = 4e9;
 
-/// By Quantity.
+/// Names of the columns, in the order of Quantity.
 constexpr std::array<std::string_view, kQuantities> kColumnNames = {
     "t_s",  "x_cmd_mm",  "y_cmd_mm",  "z_cmd_mm",  "x_act_mm",  "y_act_mm",  "z_act_mm", "feed_mm_per_min",
     "line", "a_cmd_deg", "b_cmd_deg", "c_cmd_deg", "a_act_deg", "b_act_deg", "c_act_deg"};

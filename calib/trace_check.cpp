@@ -199,7 +199,7 @@ class Checker {
     }
   }
 
-  /// Which axis of the trace, with which sign, each axis of the program is compared with.
+  /// Maps each axis of the program to the axis of the trace, and the sign, that it is compared with.
   struct Axes {
     std::array<std::size_t, kJoints> of{0, 1, 2, 3, 4, 5};
     std::array<double, kJoints> sign{1, 1, 1, 1, 1, 1};

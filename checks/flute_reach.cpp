@@ -87,7 +87,7 @@ class Report {
 
   bool full() const { return said_.size() >= kMaxLines; }
   bool has(int number, std::uint32_t block) const { return said_.contains(block) || warned_.contains(number); }
-  /// What nobody gave, the length or the blank, refuses no program: it is warned of, once a tool.
+  /// Reports material above the flutes: where the flute length or the blank is assumed, as a warning, once a tool.
   void add(int number, std::uint32_t block, double height_mm) {
     const machine::Tool& tool = job_.tools.at(number);
     const bool flutes = tool.flute_length_mm && *tool.flute_length_mm < tool.overhang_mm;

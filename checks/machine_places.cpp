@@ -16,9 +16,9 @@ namespace {
 
 using kinematics::Joints;
 
-/// Of arcs and of rapids with every axis on its own. An arc of 10 mm leaves its chord by 3 um.
+/// Distance of the places on arcs, and on rapids with every axis on its own. An arc of 10 mm leaves its chord by 3 um.
 constexpr double kCurveStep_mm = 0.5;
-/// A metre from the axis the chord leaves the arc by 2.4 um.
+/// Turn between the places of a rotary axis. A metre from the axis the chord leaves the arc by 2.4 um.
 constexpr double kTurnStep_deg = 0.25;
 
 struct ToolHeight {

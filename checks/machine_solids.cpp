@@ -41,7 +41,7 @@ class Moved : public ConvexSolid {
 
 constexpr double kRounding_mm2 = 1e-9;
 
-/// Of the profile through three circles: above zero where it is bent outwards, 0 where it is straight.
+/// Returns twice the area of the triangle that three circles of a profile span: positive where it bends outwards.
 double bend_mm2(const OutlineRing& a, const OutlineRing& b, const OutlineRing& c) {
   return (b.radius_mm - a.radius_mm) * (c.height_mm - b.height_mm) -
          (b.height_mm - a.height_mm) * (c.radius_mm - b.radius_mm);

@@ -34,7 +34,7 @@ void append(std::vector<ToolPose>& poses, const ToolPose& pose, const ToolSurfac
   poses.insert(poses.end(), more.begin(), more.end());
 }
 
-/// As the control commands them (feedmodel::predict_joints).
+/// Places the tools along the rapids by the joints that the control commands (feedmodel::predict_joints).
 void pose_by_joints(const machine::Job& job, const motion::SimulatedProgram& program, const Surfaces& tools,
                     std::vector<PosedRapid>& rapids) {
   constexpr double kClose_mm = 0.5 * kCollisionStep_mm;
@@ -167,7 +167,7 @@ class Search {
       stock_->sweep_to(k);
   }
 
-  /// Those before stamp k.
+  /// Checks the rapids before stamp k.
   void look_at_rapids(std::size_t k) {
     for (; next_rapid_ < rapids_.size() && rapids_[next_rapid_].check.before_stamp <= k; ++next_rapid_) {
       const PosedRapid& rapid = rapids_[next_rapid_];

@@ -28,7 +28,7 @@ struct CheckArguments {
   ReadOptions read{};
 };
 
-/// What check finds is its result: it is printed, and what --strict makes errors ends it with 1.
+/// Prints what check has found, which is its result. Returns 1 where --strict makes errors of it.
 template <class Result>
 int finish_check(const Result& result, const std::string& json, const GlobalOptions& options) {
   if (!json.empty()) write_file(json, result.json);

@@ -85,7 +85,7 @@ int guarded(const Action& action, const GlobalOptions& options) {
   return kInputWrong;
 }
 
-/// Of the words that are offered, the one that was most likely meant; empty: none is near.
+/// Returns the offered word that was most likely meant; empty where none is near.
 std::string meant(const std::string& word, const CLI::App& app) {
   std::vector<std::string> offered;
   if (word.rfind("--", 0) != 0) {

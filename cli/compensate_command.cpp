@@ -172,7 +172,7 @@ int run_verify(const std::string& place, const std::string& json, const GlobalOp
   return say_verdict(result.success, result.headline, result.reasons);
 }
 
-/// Of the program that is to be written; empty: none.
+/// Returns the path of the record beside the program that is to be written; empty where none is written.
 std::string record_of(const CompensateArguments& arguments) {
   std::error_code ec;
   const bool special = std::filesystem::exists(arguments.options.output, ec) &&

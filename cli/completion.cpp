@@ -68,7 +68,7 @@ std::string options_of(const Command& command) {
   return joined(names);
 }
 
-/// In single quotes, as all three shells take it.
+/// Returns the text in single quotes, as all three shells take it.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);

@@ -25,7 +25,7 @@ struct FitPartsArguments {
 
 constexpr const char* kFiles[] = {"machine.toml", "tools.toml", "material.toml", "report.html"};
 
-/// What the jobs read is not written over.
+/// Refuses a folder whose new files would replace files that the jobs read.
 void check_files(const std::vector<Job>& jobs, const std::string& folder) {
   std::error_code ec;
   for (const Job& job : jobs)

@@ -78,7 +78,7 @@ CLI::Validator material_name() {
 /// the program cannot be read with the tool upright.
 constexpr std::array kFiveAxisPresets{"preset:five-axis-trunnion", "preset:five-axis-trunnion-bc"};
 
-/// As the machine reads it that the arguments name: words of rotary axes where it has some.
+/// Returns `options` as the named machine reads programs: with words of rotary axes where it has some.
 nc::InterpreterOptions interpreter_of(const std::string& machine_path, nc::InterpreterOptions options) {
   if (machine_path.empty()) return options;
   Diagnostics of_machine;

@@ -195,7 +195,7 @@ class RankParts : public distribute::PartStore {
     merging_ = true;
     parts_.clear();
   }
-  /// On rank 0: there is nothing more to ask for. Returns `status`.
+  /// Ends the merge on rank 0: tells the others that nothing more is asked for. Returns `status`.
   int end_merge(int status) {
     const int end[kWanted] = {kEnd, status};
     for (int r = 1; r < static_cast<int>(sections_); ++r) MPI_Send(end, kWanted, MPI_INT, r, kRequest, MPI_COMM_WORLD);
@@ -231,7 +231,7 @@ class RankParts : public distribute::PartStore {
   std::uint64_t sent_bytes_ = 0;
 };
 
-/// That of rank 0. The others wait asleep: meanwhile it merges, and a rank that polls takes a processor.
+/// Returns the status of rank 0. The others wait asleep while it merges: one that polls takes a processor.
 int status_of_first(int status) {
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
@@ -250,7 +250,7 @@ double balance_percent(const std::vector<std::uint64_t>& of_ranks) {
   return most == 0 ? 100.0 : 100.0 * static_cast<double>(sum) / static_cast<double>(most * of_ranks.size());
 }
 
-/// What every rank has done, on rank 0. `work`: before the merge.
+/// Prints the work of every rank on rank 0. `work`: of this rank before the merge.
 void tell_work(const Ranks& ranks, const distribute::SectionWork& work, std::uint64_t sent_bytes) {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
@@ -348,8 +348,8 @@ int compensate_on(const Ranks& ranks, const CompensateArguments& arguments, cons
   return status_of_first(status);
 }
 
-/// What is wrong with the input is found by every rank, and said by the first; the others say what is wrong where they
-/// are alone with it.
+/// Ends all ranks. Errors of the input are found by every rank and said by the first; the others say errors of their
+/// own alone.
 [[noreturn]] void end_all(const Ranks& ranks, const std::function<void()>& say) {
   if (ranks.rank() > 0) std::this_thread::sleep_for(std::chrono::seconds(2));
   say();

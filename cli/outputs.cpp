@@ -21,7 +21,7 @@ bool same_file(const std::string& a, const std::string& b) {
   return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
 }
 
-/// What the folders above `path` come to that is there.
+/// Returns the nearest folder above `path` that exists.
 fs::path nearest_folder(fs::path path) {
   std::error_code ec;
   path = fs::absolute(path).lexically_normal();

@@ -105,7 +105,7 @@ int run_predict(const PredictArguments& given, const GlobalOptions& options) {
 
 namespace {
 
-/// One part.
+/// Computes one part of a prediction in sections.
 int run_section(const PredictArguments& arguments, const SectionOptions& part, const GlobalOptions& options) {
   std::size_t settled = 0;
   SectionResult result;

@@ -114,7 +114,7 @@ int print_raster_job(const std::string& path, const GlobalOptions& options) {
 /// The options of a raster on the command line.
 class RasterCommand {
  public:
-  /// To be called when the command has the options of reading programs.
+  /// Adds the options of rasters. Call it when the command has those of reading programs.
   RasterCommand(CLI::App& command, CLI::Option& program);
   /// --job or --part was given.
   bool asked_for() const;

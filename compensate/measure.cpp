@@ -92,7 +92,7 @@ void check_passes_before(const Task& task, const Version& given) {
   task.diagnostics.throw_if_errors();
 }
 
-/// What the best shift of each place by itself leaves, one per point of the surface.
+/// Returns, for each point of the surface, the error that the best shift of its place alone would leave.
 std::vector<double> bounds_of_bow(const Task& task, const Version& version, const Trial& given) {
   std::vector<std::size_t> index;
   std::vector<Observation> judged;
@@ -190,7 +190,7 @@ double depth_limit_um(const Task& task, const Version& version, const Trial& giv
       default_depth_limit_um(version.path, given.observed, fit_options(task, version), 1000 * task.tolerance_mm()));
 }
 
-/// What shifts are expected to leave, before the first of them is predicted.
+/// Enters in `out` the error that shifts are expected to leave, before the first of them is predicted.
 void look_out(const Task& task, State& state, CompensationResult& out) {
   const JudgedErrors left = errors_after_shift(task, *state.active, *task.given.trial, 1);
   const double given_um = state.rounds.front().error_um.p95;  // the squares fall, not always the percentile

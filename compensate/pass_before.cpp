@@ -47,7 +47,7 @@ std::optional<double> thickness_mm(const removal::Stock::Probe& stock, const rem
   return std::nullopt;
 }
 
-/// What a rigid tool leaves above the judged surface of the moves to compensate before the first of them cuts.
+/// Returns the material that a rigid tool has left above the judged surface when the first compensated move cuts.
 std::vector<Left> left_before(const Task& task, const removal::StampPath& path) {
   const Trial& given = *task.given.trial;
   removal::Stock stock(task.setup->target.blank);

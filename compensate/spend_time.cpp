@@ -48,8 +48,8 @@ bool feeds_pay(const Task& task, const State& state, double percent) {
   return expected_mm <= (1 - kPays) * p95_of(left_mm, area_mm2);
 }
 
-/// One round with new feeds. Changes of feed cost more on the machine than their plan has it: until the text fits into
-/// the time, it is planned for less. False: no text does, and nothing was predicted.
+/// Predicts one round with new feeds. Changes of feed cost more on the machine than their plan has it: until the text
+/// fits into the time, it is planned for less. False: no text does, and nothing was predicted.
 bool step_with_feeds(const Task& task, State& state, double percent) {
   const std::shared_ptr<const Trial> from = state.last;
   Version& version = *state.active;

@@ -19,12 +19,12 @@ namespace {
 
 constexpr int kSteps = EnvelopeBlocks::kSteps;
 
-/// Of four chips of one ring, N, as edge_force has them.
+/// Forces of four chips of one ring, N, in the components of edge_force.
 struct EdgeForces {
   std::array<double, kSteps> tangential, radial, axial;
 };
 
-/// Where the four chips stand and what their forces are added to.
+/// Places of four chips, and the sums that their forces are added to.
 struct Sums {
   const float *cosine_phi, *sine_phi;
   double sine, cosine;  ///< of the ring's normal angle
@@ -63,7 +63,7 @@ void add_four(const EdgeForces& e, const Sums& s) {
   }
 }
 
-/// Of an affine law without a ramp.
+/// Writes to `e` the forces by an affine law (K h + K_e) without an edge ramp.
 inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, const float* h,
                           const std::uint8_t* cut_255, double width, EdgeForces& e) {
   const double width_255 = width / 255;
@@ -77,7 +77,7 @@ inline void affine_forces(const EdgeForce& k_MPa, const machine::Material& m, co
 
 }  // namespace
 
-/// What an end adds to the sums that hold every sample whole, drawn in a straight line to the next step.
+/// Adds the end of a chip to the sums, which count every sample whole: the chip fades linearly to the next step.
 void ToothPassModel::add_end(const ChipEnd& e, double* sums, std::size_t row, std::span<float> fine_mm,
                              std::span<double> fine_N) const {
   const auto& ring = envelope_.rings[static_cast<std::size_t>(e.ring)];
@@ -169,7 +169,7 @@ void draw_between_steps(const double* x, const double* y, std::size_t count, flo
   }
 }
 
-/// One row of values, with straight lines between the steps.
+/// Draws a row of values with straight lines between the steps.
 void draw_row(const double* x, std::size_t count, double* fine) {
   for (std::size_t m = 0; m < count; ++m) {
     const double next = x[m + 1 < count ? m + 1 : 0];
@@ -208,7 +208,7 @@ class PassSums {
     values_ = room.data();
   }
   std::size_t row() const { return row_; }
-  /// From the pitch's first step on.
+  /// Row i from the first step of the pitch on.
   double* of(std::size_t i) const { return values_ + i * row_ + kAside; }
   Sums at(int step) const {
     Sums s{};

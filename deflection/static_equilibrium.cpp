@@ -34,7 +34,7 @@ using ByCoarse = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
 
 Coarse<kLateral> inverse_of(const Coarse<kLateral>& m) { return m.inverse(); }
 
-/// By blocks: of four unknowns Eigen has a fast inverse.
+/// Inverts by blocks: for four unknowns Eigen has a fast inverse.
 Coarse<kWithAxial> inverse_of(const Coarse<kWithAxial>& m) {
   const Coarse<kLateral> lateral = Coarse<kLateral>(m.topLeftCorner<4, 4>()).inverse();
   const LateralDeflection from_axial = lateral * m.topRightCorner<4, 1>();
@@ -141,7 +141,7 @@ StaticEquilibrium::Element StaticEquilibrium::element(const EdgeElement& f, cons
   return e;
 }
 
-/// What follows from deflection_.
+/// Derives from deflection_, at every node, the motion since the reading and the difference of the steps beside it.
 void StaticEquilibrium::place_deflections() {
   const std::size_t row = 2 * nodes_;
   for (std::size_t m = 0; m < steps_; ++m) {
@@ -290,7 +290,7 @@ void StaticEquilibrium::gather_part(const Element& e, std::size_t m, const Vec2&
   add(size - 1, force_z, slope_z);
 }
 
-/// How the part moves at rotation step m, and how that changes, into the balance.
+/// Enters in the balance the motion of the part at rotation step m, and its derivatives.
 void StaticEquilibrium::balance_part(std::size_t m) {
   const auto size = static_cast<Eigen::Index>(part_->size());
   const auto first = static_cast<std::ptrdiff_t>(m) * size;

@@ -93,7 +93,7 @@ std::optional<PartHead> head_of_file(const std::string& path) {
   return out;
 }
 
-/// Nothing where the file is not whole.
+/// Unpacks a part; returns nothing where the file is not whole.
 std::optional<PartFile> unpacked(std::string text) {
   constexpr std::size_t kHead = kMagic.size() + kHashLength;
   const std::string_view all = text;
@@ -111,7 +111,7 @@ std::optional<PartFile> unpacked(std::string text) {
   }
 }
 
-/// In the order of their names; without those that a section keeps for itself.
+/// Lists the part files in the order of their names, without those that a section keeps for itself.
 std::vector<std::string> part_files(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code ec;

@@ -95,8 +95,8 @@ SectionPlace place_in(const PathOutline& outline, std::size_t section, std::size
   return {PathStretch(outline.runs, {}, {}), section, sections};
 }
 
-/// Which blocks a section reads: those of its own pieces, with one more at either end, those near `region`, and the
-/// first of each run: vector kernels look there where the stock names no stamp of the run.
+/// Marks the blocks that a section reads: those of its own pieces, with one more at either end, those near `region`,
+/// and the first of each run, where vector kernels look when the stock names no stamp of the run.
 std::vector<bool> blocks_near(const Job& job, const PathOutline& outline, const ListRange& own, const Region& region) {
   constexpr double kTilesAround = 4;
   double radius_mm = 0;

@@ -236,7 +236,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-/// Which column has what.
+/// Columns of the table by their meaning.
 struct ResponseColumns {
   std::size_t hz = 0, first = 0, second = 0;
   bool polar = false;

@@ -19,7 +19,7 @@ int interval_count(std::span<const Mode> modes, const Cut& cut, double period_s,
       {kLeast * period_rad / cut.pitch_rad.front(), per_period * highest * period_s, kPerArc * period_rad / arc})));
 }
 
-/// By which the ends of a slice come later than the tip, rad.
+/// Returns the angles by which the ends of a slice come later than the tip, rad.
 std::pair<double, double> lags_of(const Cut& cut, const CutSlice& s, double depth) {
   return {cut.lag_rad_per_mm * s.from * depth, cut.lag_rad_per_mm * s.to * depth};
 }
@@ -74,7 +74,7 @@ PeriodMap::ModeStep PeriodMap::step_of(const Mode& mode) const {
   return {mode.direction, e, constant - ramp, ramp};
 }
 
-/// Of a tooth whose tip is at an angle; without a lag over the slice both ends are alike, and integrated once.
+/// Evaluates the integrals of all slices for a tooth whose tip is at `angle`; without lag both ends share one value.
 void PeriodMap::integrate_to(double angle, double depth, std::vector<SliceIntegrals>& out) const {
   out.resize(integrals_.size());
   for (std::size_t i = 0; i < integrals_.size(); ++i) {

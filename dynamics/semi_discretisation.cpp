@@ -152,7 +152,7 @@ StabilityBorder border_of(Multiplier mu) {
   return mu.real() < 0 ? StabilityBorder::flip : StabilityBorder::fold;
 }
 
-/// Of the frequencies that a multiplier stands for, +-arg / (2 pi T) + k / T, the one that the modes answer most.
+/// Returns the frequency that the modes answer most, of those that a multiplier stands for: +-arg / (2 pi T) + k / T.
 double heard_hz(std::span<const Mode> modes, Multiplier mu, double period_s) {
   double highest = 0, best = 0, answer = -1;
   for (const Mode& m : modes) highest = std::max(highest, m.frequency_hz);

@@ -15,7 +15,7 @@ namespace {
 /// Avoids "-0.000", so that a resting axis has the same bytes whichever way it came to rest.
 double clean(double value, double half_step) { return value > -half_step && value < half_step ? 0.0 : value; }
 
-/// On the disk of the nearest folder above `path` that is there.
+/// Returns the free bytes on the disk of the nearest folder above `path` that exists.
 double free_bytes_at(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code ec;

@@ -13,7 +13,7 @@ double squared(double v) { return v * v; }
 /// Speed squared that the segment can win or lose along its length.
 double gain(const PlanRow& row) { return row.length_mm > 0 ? 2.0 * row.acceleration_mm_per_s2 * row.length_mm : 0.0; }
 
-/// Returns the acceleration that the control counts on for braking.
+/// Returns the part of that gain that the control counts on for braking.
 double brakes(const PlanRow& row) { return gain(row) * row.planned_fraction; }
 
 }  // namespace

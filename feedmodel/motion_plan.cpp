@@ -219,7 +219,7 @@ class Planner {
     return at(i).time.end_s();
   }
 
-  /// It may begin before the one before it has ended, and the next one before it ends.
+  /// Times a positioning move: it may begin before the segment before it ends, and the next one before it ends.
   void time_positioning(std::size_t i) {
     const Segment& s = at(i).segment;
     SegmentTime& time = at(i).time;

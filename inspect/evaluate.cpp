@@ -86,7 +86,7 @@ void evaluate_alone(Evaluation& e) {
   }
 }
 
-/// Where a feature's middle should be, of those that tell positions.
+/// Returns the nominal middle of a feature that tells a position.
 Vec3 nominal_middle(const Evaluation& e) {
   const Feature& f = e.feature;
   const Vec3 axis = (f.axis_mm[1] - f.axis_mm[0]).normalized();

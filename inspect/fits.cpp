@@ -51,7 +51,7 @@ bool least_squares(const DistancesAt& at, bool with_radius, VectorXd& p, double&
   return true;  // at the rounding of the numbers
 }
 
-/// What a Chebyshev fit makes as small as it can, of the distances: half the zone, minus the least, or the greatest.
+/// Returns what a Chebyshev fit minimizes over the distances: half the zone, minus the least, or the greatest.
 double goal(const VectorXd& d, FeatureFilter filter) {
   const Range r = range_of(d);
   switch (filter) {

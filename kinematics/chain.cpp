@@ -23,7 +23,7 @@ bool within(double value, const std::array<double, 2>& travel) {
   return value >= travel[0] - kTravelTolerance && value <= travel[1] + kTravelTolerance;
 }
 
-/// Of the windings of `angle` within travel the nearest to `near`; false where there is none.
+/// Turns `angle` by whole turns to the winding within travel that is nearest to `near`; false where there is none.
 bool wind(double& angle, double near, const std::array<double, 2>& travel) {
   const double nearest = nearest_turn(angle, near);
   if (within(nearest, travel)) {

@@ -135,7 +135,7 @@ class Placer {
     move.reference = !ends.known && move.kind != nc::MoveKind::dwell;
   }
 
-  /// What the move names stays what it is.
+  /// Places the ends of the move where the axes are. Ends that are there already keep the numbers of the text.
   void place_ends(nc::Move& move, const LinearEnds& ends) {
     const Vec3 start = joints_.programmed_mm({ends.start_mm, now_.start_rad}),
                end = joints_.programmed_mm({ends.end_mm, now_.end_rad});
@@ -146,7 +146,7 @@ class Placer {
     }
   }
 
-  /// To where an axis is that the program has not placed.
+  /// Shifts the arc so that it starts at `start_mm`, where an axis is that the program has not placed.
   void shift_arc(nc::Move& move, const Vec3& start_mm) {
     const Vec3 by_mm = start_mm - move.start_mm;
     program_.arcs[move.arc].center_mm += by_mm;
@@ -206,7 +206,7 @@ class Placer {
     move.end_mm = map * move.end_mm;
   }
 
-  /// What a program without tool-centre-point control names for these positions of the axes.
+  /// Returns the coordinates by which a program without tool-centre-point control names these positions of the axes.
   Vec3 named_mm(const nc::Move& move, const Vec3& linear_mm) const {
     return map_.named_mm(linear_mm, program_.state_of(move).tool_length_mm.value_or(0));
   }

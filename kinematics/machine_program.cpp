@@ -102,7 +102,7 @@ ReadingOptions reading_of(const machine::Job& job) {
   return out;
 }
 
-/// What is known of the moves where rotary axes turn.
+/// The views of a program in which rotary axes turn: its moves by program, axes and part.
 struct MachineProgram::Views {
   machine::Machine machine;
   std::once_flag program_once, part_once, axes_once;

@@ -13,8 +13,8 @@ namespace {
 /// A turn of this much between two places: at 100 mm from the axis the chord leaves the arc by 4 um.
 constexpr double kTurnStep_rad = kPi / 180;
 
-/// From X Y Z of the text to the tip on the part, where rotary axes stand and X Y Z are those of a frame on it: under
-/// G254 the frame is parallel to the machine, as the work lies at these angles.
+/// Maps X Y Z of the text to the tip on the part, where rotary axes stand and X Y Z count in a frame on the part: under
+/// G254 it is parallel to the machine, as the work lies at these angles.
 Eigen::Isometry3d part_from_text(const nc::Interpretation& text, const nc::Move& move, const Chain& chain,
                                  const Vec3& rotary_rad) {
   Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
@@ -126,7 +126,7 @@ std::optional<Vec3> PartPath::text_mm(std::uint32_t move, const Vec3& tip_mm) co
   return map_.named_mm(*linear, at.tool_length_mm);
 }
 
-/// Nothing where it is no arc there.
+/// Returns the arc in the part's frame; nothing where it is no arc there.
 std::optional<nc::Arc> PartPath::arc_in_part(std::uint32_t move) const {
   const At& at = at_[move];
   nc::Arc arc = text_.arcs[text_.moves[move].arc];

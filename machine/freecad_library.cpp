@@ -125,7 +125,7 @@ class Bit {
     return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
   }
 
-  /// By the shape's file; where its name says nothing, by shape-type.
+  /// Returns the kind of the bit by the file of its shape; where that name says nothing, by shape-type.
   std::string kind() const {
     const std::string file = text(file_.root, "shape"), type = text(file_.root, "shape-type");
     for (const std::string& word : {letters(fs::path(file).stem().string()), letters(type)}) {

@@ -1,5 +1,5 @@
 namespace {
-/// What the parser takes for its own fault, and is a fault of the text all the same: `[ =a]`.
+/// Thrown where the parser takes a fault of the text, such as `[ =a]`, for its own.
 struct ParserRefusal {};
 [[noreturn]] void refuse_text() { throw ParserRefusal{}; }
 }  // namespace

@@ -271,7 +271,7 @@ std::optional<Mention> mention_of(const CommentedLine& line, bool inch) {
   return out;
 }
 
-/// Where the program's tools come in, and where it moves.
+/// Finds the lines at which the tools of a program come in, and those that move.
 class Changes {
  public:
   explicit Changes(const SourceText& program) : program_(program) {
@@ -313,7 +313,7 @@ class Changes {
     auto at = changes_.upper_bound(line);
     return at == changes_.begin() ? std::nullopt : std::optional(std::prev(at)->second);
   }
-  /// Nothing moves from the last change down to the line.
+  /// True where nothing moves from the last change down to the line.
   bool just_changed(std::size_t line) const {
     static const std::regex kMotion(R"([XY]\s*[-+.\d])");
     const auto at = changes_.upper_bound(line);

@@ -167,7 +167,7 @@ void read_gauge(const std::string& words, ToolProposal& tool) {
     tool.diameter_mm = size_of(m[1].str());
 }
 
-/// What the job's tool types leave out of a cutter with these words, as a sentence; empty: nothing.
+/// Returns, as a sentence, what the job's tool types leave out of a cutter with these words; empty: nothing.
 std::string doubt_of(const std::string& words) {
   if (has(words, "CORNER ROUND")) return "type \"general\" describes its profile (docs/cutters.md)";
   if (has(words, "DOVETAIL") || has(words, "T-SLOT") || has(words, "T SLOT")) return "its undercut is left out";

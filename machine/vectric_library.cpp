@@ -52,7 +52,7 @@ class Database {
     return std::unique_ptr<sqlite3_stmt, CloseStatement>(statement);
   }
 
-  /// False at the end.
+  /// Steps to the next row; false at the end.
   bool step(sqlite3_stmt* statement) const {
     const int result = sqlite3_step(statement);
     if (result != SQLITE_ROW && result != SQLITE_DONE) fail(sqlite3_errmsg(db_.get()));

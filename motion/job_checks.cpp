@@ -31,7 +31,7 @@ std::map<Key, const nc::Move*> first_moves(const nc::Interpretation& moves, cons
   return out;
 }
 
-/// What the move does to the tool's owner: "cuts", or the cycle.
+/// Names the move in a message: "cuts here", or its cycle.
 std::string deed(const nc::Move& move, HoleMove hole) {
   if (hole == HoleMove::none) return "cuts here";
   const char* verb = hole == HoleMove::tapped ? "taps" : "drills";

@@ -19,7 +19,7 @@ constexpr std::array<char, 3> kLetters{'X', 'Y', 'Z'};
 
 bool cuts(const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; }
 
-/// Of the unit direction along the move, the largest magnitude of each component.
+/// Returns the largest magnitude of each component of the unit direction along the move.
 Vec3 largest_direction(const nc::Interpretation& moves, const nc::Move& m) {
   constexpr int kArcSteps = 64;
   const int steps = m.kind == nc::MoveKind::arc ? kArcSteps : 1;
@@ -34,7 +34,7 @@ class Operations {
  public:
   explicit Operations(const nc::Interpretation& moves) : events_(moves.events) {}
 
-  /// Of the moves in ascending order: true where a tool change lies before it.
+  /// True where a tool change lies before the move. Moves are asked for in ascending order.
   bool begins(std::size_t move) {
     bool changed = false;
     for (; next_ < events_.size() && events_[next_].before_move <= move; ++next_)
@@ -68,7 +68,7 @@ class MachineCheck {
   }
 
  private:
-  /// What is clamped in one operation.
+  /// Moves of one operation whose value the control clamps to a limit.
   struct Clamped {
     const nc::Move* move = nullptr;  ///< the first
     double largest = 0;              ///< asked for
@@ -109,7 +109,7 @@ class MachineCheck {
     }
   }
 
-  /// Of the operation that ends: at its first places, with the largest of all.
+  /// Reports the limits exceeded in the operation that ends: at the first place of each, with the largest value.
   void report() {
     if (spindle_.move)
       say(*spindle_.move, Severity::warning, "spindle-limit",

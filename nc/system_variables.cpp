@@ -86,7 +86,7 @@ std::optional<Value> SystemVariables::offset_value(int number, std::size_t offse
   return Value(work && variable->axis >= 3 ? *value : *value / interpreter_.facts().unit_mm);
 }
 
-/// False where the variable is no offset.
+/// Sets an offset by its variable; false where the variable is none.
 bool SystemVariables::set_offset(int number, Value value, std::size_t offset) {
   const auto variable = offset_variable(dialect_, number);
   if (!variable) return false;

@@ -128,7 +128,7 @@ class Joiner {
   static int levels(const Run& run, const Conditions& c) {
     return std::max(1, static_cast<int>(std::ceil(depth_mm(run) / c.axial_mm - 1e-6)));
   }
-  /// Of finishing: floors are cut once in any case, walls once a level.
+  /// Returns the number of levels at which a finishing run cuts walls; floors are cut once in any case.
   double wall_levels(const Run& run, const Conditions& c) const { return levels(run, c); }
 
   /// Time of loops or rows over the primitives: evenly spaced levels, and bottoms that are none of them by themselves.

@@ -118,7 +118,7 @@ class EarCutter {
     return true;
   }
 
-  /// Of the ears with this turn at least the one with the shortest side across: slender triangles are slow to use.
+  /// Returns the ear of at least this turn with the shortest side across: slender triangles are slow to use.
   std::size_t find(std::int64_t least_turn) const {
     std::size_t best = ring_.size();
     double shortest = 1e300;

@@ -169,7 +169,7 @@ std::optional<Ring> ring_of(const Outline& loop, const FaceOptions& options, dou
 struct Chain {
   std::vector<Ring> rings;
   double top_mm = 0, bottom_mm = 0;
-  /// Of the middle one by radius: the stock is not sharp at the edges of the ends.
+  /// Returns the ring of median radius: the stock is not sharp at the edges of the ends.
   Ring ring() const {
     std::vector<Ring> sorted = rings;
     std::ranges::sort(sorted, {}, &Ring::radius_mm);

@@ -124,7 +124,7 @@ void CellGrid::add(const TriangleSolid& solid, double GridCell::*field, double G
   }
 }
 
-/// Of a cell's faces: less free-form face is none.
+/// Fraction of a cell's faces below which its free-form face counts as none.
 constexpr double kFreeForm = 1e-4;
 
 void CellGrid::classify(double tolerance_mm) {

@@ -31,7 +31,7 @@ bool same_kind(ToolType job, ToolType comment) {
 
 bool near(double a, double b, double fraction) { return std::abs(a - b) <= fraction * std::max(a, b); }
 
-/// What a factor between two lengths is usually made by.
+/// Names the mistake that usually makes the factor between two lengths.
 std::string factor_hint(double job, double comment) {
   constexpr double kNear = 0.04;
   if (near(job * kMmPerInch, comment, kNear)) return " (is it in inches?)";

@@ -11,7 +11,7 @@ namespace py = pybind11;
 namespace camber_python {
 namespace {
 
-/// What every result has: `json`, the same parsed as `figures`, and `diagnostics`.
+/// Binds the members of every result: `json`, the same parsed as `figures`, and `diagnostics`.
 template <class Result>
 py::class_<Result> result_class(py::module_& module, const char* name) {
   return py::class_<Result>(module, name)

@@ -45,7 +45,7 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// Stands in the uppermost layer where a layer below has the value.
+/// Value of the uppermost layer where the value of a layer below counts.
 constexpr float kBelow = std::numeric_limits<float>::max();
 constexpr std::size_t kMaxBelow = 2;
 
@@ -53,7 +53,7 @@ constexpr std::size_t kMaxBelow = 2;
 /// nothing. Does not change once it is made; may be read by many threads.
 class RepeatedLeaves {
  public:
-  /// Stands in the field at the place of a leaf that was taken out.
+  /// Value of the field at the place of a leaf that was taken out.
   static constexpr float kHere = std::numeric_limits<float>::lowest();
 
   /// Takes every leaf whose values and active voxels stand at least twice in the tree out of it.

@@ -90,7 +90,7 @@ class Search {
   }
 
  private:
-  /// What is laid out again can be no faster than its length over the feed.
+  /// True where laying out again cannot pay: no new block is faster than its length over the feed.
   bool nothing_to_gain(const nc::Interpretation& moves) {
     if (options_.layout.length_mm > 0 || !options_.keep_old || !out_.limit.holds(before_) ||
         before_.move_s.size() != moves.moves.size())

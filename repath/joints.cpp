@@ -104,7 +104,7 @@ double PieceJoints::chord_angle_rad(const Primitive& p) const {
   return kept.angle_rad;
 }
 
-/// What rounding of the centre may change of the direction at an end.
+/// Returns the angle by which rounding of the centre may turn the direction at an end.
 double PieceJoints::rounding_rad(const Primitive& p) const {
   return p.arc ? 0.5 * increment_mm_ / p.center_from_start_mm.norm() : 0;
 }

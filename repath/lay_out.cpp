@@ -138,7 +138,7 @@ class SmoothedPath::Layouter {
     return p.curve ? p.curve->length_mm() : (old[p.last] - old[p.first]).norm();
   }
 
-  /// What lies between two corners, and how much of it is within their reach.
+  /// Begins the stretch between two corners and notes how much of it is within their reach.
   void begin_stretch(std::size_t k) {
     if (!mark_) return;
     const auto& pieces = path_.pieces_;

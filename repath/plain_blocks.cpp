@@ -147,8 +147,8 @@ class Walk {
     depends_on_switch_ = open_axes_ != 0 || open_motion_ || !open_groups_.empty();
   }
 
-  /// What a block does that may be left out: until words say where the tool is and what moves it, all depends on the
-  /// switch.
+  /// Takes a block that the skip switch may leave out: until words say where the tool is and what moves it, all depends
+  /// on the switch.
   void take_skipped(std::size_t b) {
     for (const nc::Word& w : program_.words_of(b)) {
       if (is_coordinate(w.letter)) open_axes_ = static_cast<std::uint8_t>(open_axes_ | 1U << (w.letter - 'X'));

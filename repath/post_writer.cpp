@@ -173,7 +173,7 @@ void PostWriter::open_run(const nc::Move& move, std::vector<std::string>& lines)
   keep_tip_control(move.block, move.block + 1);
 }
 
-/// What the text has in these blocks must not switch tool-centre-point control off.
+/// Edits these blocks so that their text does not switch tool-centre-point control off.
 void PostWriter::keep_tip_control(std::uint32_t first, std::uint32_t end) {
   if (options_.target != PostTarget::tcp || options_.frame) return;
   for (std::uint32_t b = first; b < end; ++b) {

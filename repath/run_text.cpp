@@ -37,7 +37,7 @@ bool is_motion(const nc::Word& w) {
   return (g >= 0 && g <= 3) || (g >= 33 && g < 34) || (g >= 38 && g < 39) || (g >= 73 && g <= 89);
 }
 
-/// What the blocks of a run have in common.
+/// Writes the blocks of a run, with what they have in common.
 class RunBlockWriter {
  public:
   RunBlockWriter(const nc::Program& program, const nc::Interpretation& moves, const BlockRun& run,

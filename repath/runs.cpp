@@ -46,7 +46,7 @@ class RunFinder {
   const ApartCounts& apart() const { return apart_; }
 
  private:
-  /// What keeps the move out of every run; `still`: a bit for every axis that it does not move.
+  /// Returns the reason that keeps the move out of every run; `still`: a bit for every axis that it does not move.
   Apart fits(std::uint32_t m, unsigned& still) const {
     const nc::Move& move = moves_.moves[m];
     if (move.canned || move.reference) return Apart::not_editable;
@@ -74,7 +74,7 @@ class RunFinder {
 
   bool in_space() const { return kind_ != RunKind::in_plane; }
 
-  /// What keeps the move apart from the one before it.
+  /// Returns the reason that keeps the move apart from the one before it.
   Apart continues(std::uint32_t m) const {
     const nc::Move &now = moves_.moves[m], &before = moves_.moves[m - 1];
     // Where the control stops (before an M code, say) the run ends and keeps its stop.

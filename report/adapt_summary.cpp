@@ -86,7 +86,7 @@ std::string chatter_rows(const AdaptResult& r) {
   return out;
 }
 
-/// What would keep the limit.
+/// Says which depth or speed would keep the limit.
 std::string cure_of(const adapt::SpeedChange& c) {
   std::string depth = fmt::format("an axial depth of {:.2g} mm at S{:.0f}", c.kept_depth_mm, c.before_rpm);
   if (c.advised_rpm > 0 && c.advised_rpm != c.after_rpm)

@@ -89,7 +89,7 @@ Json depth(const compensate::Depth& d) {
   return j;
 }
 
-/// What levers that were not used would bring.
+/// Lists the levers that were not used, with the error that they are expected to leave and their time.
 Json unused_levers(const compensate::CompensationResult& c) {
   Json out = Json::array();
   for (const compensate::LeverOutlook& o : c.verdict.unused)
@@ -99,7 +99,7 @@ Json unused_levers(const compensate::CompensationResult& c) {
   return out;
 }
 
-/// What was used and what it cost.
+/// Lists the levers that were used, with what they cost.
 Json levers_used(const compensate::CompensationResult& c) {
   const compensate::Round& best = c.rounds[c.best];
   return {{"shift_max_um", 1000 * c.path.max_shift_mm},

@@ -50,7 +50,7 @@ Json load_json(const copymill::LoadFigures& l) {
           {"over", l.over}};
 }
 
-/// Of the operations that have a target: all passings together, the greatest load by its own target.
+/// Adds up the operations that have a target: all passings together, the greatest load by its own target.
 copymill::LoadFigures together(const CopyResult& r) {
   copymill::LoadFigures out;
   for (const copymill::OperationSummary& o : r.operations) {

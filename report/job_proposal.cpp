@@ -178,7 +178,7 @@ std::string box_text(const machine::Box& box) {
   return fmt::format("box_mm = [{}, {}]\n", corner(box.min_mm), corner(box.max_mm));
 }
 
-/// What a pass before has left. allowance_mm: of a program that finishes alone; 0: an example.
+/// Returns the lines on what a pass before has left. allowance_mm: of a program that finishes alone; 0: an example.
 std::string allowance_text(const StockProposal& stock, double allowance_mm) {
   if (allowance_mm == 0)
     return line("# allowance_mm = 0.2", "what the pass before has left, where it had the same path");

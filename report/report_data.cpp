@@ -58,7 +58,7 @@ void add_figures(ReportData& data, const removal::ErrorFigures& before, const re
   add("form error, mean", &removal::ErrorFigures::mean, "mean");
 }
 
-/// What the form error is made of.
+/// Adds the parts of the form error that the page shows, each as a quantity of its own.
 void add_parts(ReportData& data, const simulate::Prediction& p) {
   const auto part = [&](const char* name, double value, const char* key) {
     data.figures.push_back({name, value, std::nullopt, "um", 2, key});

@@ -61,7 +61,7 @@ struct Rectangle {
   bool operator==(const Rectangle&) const = default;
 };
 
-/// What the program has cut so far, and how high the blank may stand in each cell without a rapid touching it.
+/// Heights that the program has cut, and how high the blank may stand in each cell without a rapid touching it.
 class Map {
  public:
   Map(const Vec3& low, const Vec3& high) : low_(low) {
@@ -108,8 +108,8 @@ class Map {
   double x_mm(int cell) const { return low_.x() + cell * cell_; }
   double y_mm(int cell) const { return low_.y() + cell * cell_; }
 
-  /// What the program removes below `top_mm`, over each rectangle that begins in the corner, cell^2 mm. Material that
-  /// it leaves counts for little.
+  /// Returns the volume that the program removes below `top_mm` over each rectangle from the corner, cell^2 mm.
+  /// Material that it leaves counts for little.
   std::vector<double> removed_sums(double top_mm) const {
     constexpr double kLeft_mm = 1e-3;
     const std::size_t row = static_cast<std::size_t>(nx_) + 1;
@@ -131,7 +131,7 @@ class Map {
     return at(r.x1, r.y1) - at(r.x0, r.y1) - at(r.x1, r.y0) + at(r.x0, r.y0);
   }
 
-  /// Of the rectangles whose cells may all stand up to `top_mm`, the one with the largest sum: under the histogram of
+  /// Returns the rectangle with the largest sum whose cells may all stand up to `top_mm`, found under the histogram of
   /// each row.
   Rectangle best(double top_mm, const std::vector<double>& sums) const {
     Rectangle best;
@@ -247,8 +247,8 @@ class Proposer {
     return out;
   }
 
-  /// Of a size: Z0 on top, or below where cuts lie above it; X0 Y0 in the middle, or in the corner, whichever holds the
-  /// path of the tips.
+  /// Places a blank of known size: Z0 on top, or below where cuts lie above it; X0 Y0 in the middle or in the corner,
+  /// whichever holds the path of the tips.
   machine::Box placed(const machine::CommentedStock& stock, std::string& how) {
     const Vec3& size = *stock.size_mm;
     nc::Extents tips;
@@ -309,7 +309,7 @@ class Proposer {
     return lowest;
   }
 
-  /// Of the cutting moves across, by their lower ends; plunges alone: their tops.
+  /// Returns the height of the highest cutting move across, by its lower end; with plunges alone the deepest.
   double highest_pass_mm() const {
     const double travel = travel_height_mm();
     double pass = -kNever, lowest = kNever;

@@ -168,7 +168,7 @@ std::string deflection_parts_text(const simulate::Prediction& p) {
          figures_row("  workpiece", p.deflection_parts_um->part_um);
 }
 
-/// What the model does not cover; figures of which it covers less than half are null.
+/// Adds what the model does not cover, and makes figures null of which it covers less than half.
 void add_beyond_model(const simulate::SimulatedProgram& program, const simulate::Prediction& p, Json& j) {
   const simulate::Validity& v = p.validity;
   if (v.all()) return;
@@ -197,7 +197,7 @@ void add_beyond_model(const simulate::SimulatedProgram& program, const simulate:
                                           {"limit", 1000 * p.cut.deflection_limit_mm}};
 }
 
-/// What the tooth passings of the chosen operations take on the machine, rapids left out.
+/// Returns the machine time of the tooth passings of the chosen operations, without rapids.
 double simulated_time_s(std::span<const removal::Stamp> stamps) {
   double time_s = 0;
   for (std::size_t k = 1; k < stamps.size(); ++k)

@@ -60,7 +60,7 @@ class CellKeys {
       for (std::size_t a = 0; a < 3; ++a) lo[a] = std::min(lo[a], c.edge[a]);
     for (std::size_t a = 0; a < 3; ++a) lowest_[a] = floor_fraction(lo[a] - 1, factor);
   }
-  /// Of the cells around an edge.
+  /// Returns the keys of the four cells around an edge.
   std::array<std::uint64_t, 4> around(const Crossing& c) const {
     std::array<std::uint64_t, 4> out{};
     const auto cells = cells_around(c, factor_);

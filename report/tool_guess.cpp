@@ -111,7 +111,7 @@ double typical_overhang_mm(const ToolProposal& tool) {
   return diameter_mm >= kFaceMill_mm ? in_table(kFaceMills, diameter_mm) : in_table(kEndMills, diameter_mm);
 }
 
-/// What the shape of the type needs.
+/// Fills in the sizes that the shape of the tool's type needs.
 void fill_profile(ToolProposal& tool, std::vector<std::string>& assumed) {
   const auto take = [&](std::optional<double>& value, double guess, const char* key) {
     if (value) return;

@@ -30,7 +30,7 @@ std::vector<double> speeds_about(const machine::Job& job, double rpm, int count)
   return speeds;
 }
 
-/// What is known of one tool at one speed.
+/// Stability of one tool at one speed.
 struct ToolAtSpeed {
   StabilityTable* table = nullptr;
   ChatterOperation operation;

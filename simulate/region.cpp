@@ -20,7 +20,7 @@ namespace {
 
 using removal::Stamp;
 
-/// What a tool leaves between two places of its path is d^2 / 8 R.
+/// Returns the distance of the samples: between two places of its path a tool leaves a ridge of d^2 / 8 R.
 double sample_spacing_mm(const machine::Tool& tool) {
   constexpr double kRidge_mm = 0.001, kMin_mm = 0.02, kMax_mm = 0.2;
   const double corner = removal::shape_of(tool).corner_radius_mm;

@@ -75,7 +75,7 @@ json short_figures(const json& figures) {
   return out;
 }
 
-/// What lies in the folder of each command's results: its record, figures and files.
+/// Lists the results of each command of a job: record, figures and files.
 json results_json(const Folder& folder, const std::string& job) {
   json out = json::array();
   for (const std::string& command : run_names()) {

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What stands behind an option.
+/// The kind of value that an option takes.
 enum class Value { none, text, file };
 
 struct RunKind {

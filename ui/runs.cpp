@@ -31,7 +31,7 @@ json optional(const std::optional<double>& value) { return value ? json(*value) 
 
 json error(const std::string& message) { return {{"event", "error"}, {"severity", "error"}, {"message", message}}; }
 
-/// What a command left unfinished when a signal ended it: nothing that is shown with a result.
+/// Returns the message of a run that a signal ended.
 std::string crash_text(int signal) {
   return fmt::format("the run crashed ({}); the server goes on. Please report it with the files", strsignal(signal));
 }

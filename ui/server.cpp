@@ -199,7 +199,7 @@ class Server {
  private:
   using Answer = std::function<void(const Request&, Response&)>;
 
-  /// What an answer throws is the answer.
+  /// Returns `answer` with exceptions turned into replies.
   static Answer guarded(Answer answer) {
     return [answer](const Request& request, Response& response) {
       try {
@@ -330,7 +330,7 @@ class Server {
     return name;
   }
 
-  /// As it comes, so that it is never in memory as a whole. Returns the name.
+  /// Writes an upload to the folder piece by piece, so that it is never in memory as a whole. Returns its name.
   std::string take_upload(const std::string& name, const httplib::ContentReader& reader) {
     OutputFile file(folder_.place(name));
     std::uint64_t bytes = 0;

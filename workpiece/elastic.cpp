@@ -213,7 +213,7 @@ Bodies join_bodies(const std::vector<Place>& places, const std::vector<Vec3>& mi
   return out;
 }
 
-/// Of a symmetric block that may be singular: turns of a body that is a single node, or a line of them.
+/// Returns the inverse of a symmetric block, made regular first where turns of a node, or of a line, have no stiffness.
 template <int kSize>
 Eigen::Matrix<double, kSize, kSize> inverse_of(Eigen::Matrix<double, kSize, kSize> m) {
   constexpr double kTiny = 1e-9;

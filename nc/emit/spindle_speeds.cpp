@@ -85,7 +85,7 @@ class SpeedWords {
     writer.replace(from, length, format_number(speed.rpm, 0, kSpeedStyle, program_.source.text().substr(from, length)));
   }
 
-  /// Of an S word before its number: "S", "S1=".
+  /// Returns the text of the program's S words before the number: "S", "S1=".
   std::string address() const {
     for (const auto& [block, speed] : words_)
       if (const auto word = rules_->speed_word(block, speed.programmed))

@@ -128,7 +128,7 @@ Vec3 Klartext::target(const BlockValues& b) const {
   return end;
 }
 
-/// In the frame of the moves. Axes that no word moves keep their place to the last bit.
+/// Returns the end in the frame of the moves. Axes that no word moves keep their place to the last bit.
 Vec3 Klartext::end_in_moves(const Vec3& programmed_end, std::uint8_t given) const {
   if (frame_.plain) return programmed_end;
   Vec3 end = frame_.from_program(programmed_end);

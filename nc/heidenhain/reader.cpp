@@ -503,7 +503,7 @@ class Reader {
     return true;
   }
 
-  /// What belongs to an M function: F of M128, MB of M140, LA of M120, the axes of M118 and M138.
+  /// Reads a word that belongs to the M function before it: F of M128, MB of M140, LA of M120, axes of M118 and M138.
   bool read_argument(Cursor& at, std::size_t begin) {
     const double m = after_m_;
     const auto argument = [&](std::size_t length) { return value_word(at, begin, letter::kArgument, length); };

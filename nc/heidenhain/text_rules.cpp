@@ -38,7 +38,7 @@ class KlartextRules : public TextRules {
     return out;
   }
 
-  /// In TOOL CALL, or S1000 alone.
+  /// Returns the S word of a TOOL CALL, or of a block such as S1000.
   std::optional<Word> speed_word(std::uint32_t block, double rpm) const override {
     if (kind_of(block) != Kind::tool_call) return TextRules::speed_word(block, rpm);
     const Statement& s = tree_.statements[statement_of_[block]];
@@ -219,7 +219,7 @@ class KlartextRules : public TextRules {
 
   std::string new_line(std::string line) const override { return numbers_ ? with_number(line, 0) : line; }
 
-  /// One more in each line that has a number; lines that continue others have none.
+  /// Numbers the lines anew, each that has a number by one more than the last; lines that continue others have none.
   std::string renumbered(std::string text) const override {
     if (!numbers_) return text;
     std::string out;

@@ -13,7 +13,7 @@ namespace camber::nc::heidenhain {
 
 namespace {
 
-/// As the text has it.
+/// Returns the word by which programs say `letter`, such as FMAX for kRapid.
 std::string name_of(char letter) {
   struct Name {
     char letter;

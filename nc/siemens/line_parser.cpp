@@ -245,7 +245,7 @@ void LineParser::parse_indexes(Item& item) {
   tree_.arguments.insert(tree_.arguments.end(), indexes.begin(), indexes.end());
 }
 
-/// At the [ or = behind the name of a variable.
+/// Parses an assignment from the [ or = behind the name of its variable on.
 void LineParser::parse_assignment(Item item) {
   item.kind = ItemKind::assign;
   parse_indexes(item);

@@ -375,7 +375,7 @@ void BlockRunner::read_g_code(const CodeWord& code) {
         fmt::format("G{}", g));
 }
 
-/// As ModalState::work_offset has them: G54 to G57 by their number, G505 to G599 as G54.1 P5 to P99, G500 as 500.
+/// Sets ModalState::work_offset: G54 to G57 by their number, G505 to G599 as G54.1 P5 to P99, G500 as 500.
 void BlockRunner::set_work_offset(int g) {
   const int number = g > 500 ? 540000 + g - 500 : g;
   if (radius_.active && radius_.radius_mm != 0 && number != state_.work_offset)

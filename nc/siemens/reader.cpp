@@ -200,7 +200,7 @@ class Reader {
                               item.constant ? item.number : std::numeric_limits<double>::quiet_NaN()});
   }
 
-  /// At %_N_SLOT_SPF, or % alone: no block. False elsewhere.
+  /// Begins a program at %_N_SLOT_SPF, or at % alone, which are no blocks. False elsewhere.
   bool begin_part(std::size_t at, std::size_t end) {
     while (at < end && is_blank(text_[at])) ++at;
     if (at >= end || text_[at] != '%') return false;

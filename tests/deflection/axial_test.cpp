@@ -5,6 +5,7 @@
 
 #include "deflection/beam.h"
 #include "deflection/tooth_pass.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/cutting.h"
 
 namespace camber::deflection {
@@ -30,7 +31,8 @@ double bar(double length, double diameter) { return length / (kYoung * kPi / 4 *
 
 TEST(AxialBeam, IsASteppedBarOnASpring) {
   const Beam beam = beam_of(stepped());
-  EXPECT_NEAR(beam.axial_compliance_mm_per_N(0), 1 / kRoot + bar(8, 4.8) + bar(12, 5) + bar(30, 8), 1e-15);
+  tests::expect_figure("axial compliance of the bar", beam.axial_compliance_mm_per_N(0) - 1 / kRoot,
+                       bar(8, 4.8) + bar(12, 5) + bar(30, 8), 1e-10);
   EXPECT_NEAR(beam.axial_compliance_mm_per_N(14), 1 / kRoot + bar(6, 5) + bar(30, 8), 1e-15);
   EXPECT_NEAR(beam.axial_compliance_mm_per_N(50), 1 / kRoot, 1e-15);
 }

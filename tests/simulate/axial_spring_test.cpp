@@ -3,9 +3,11 @@
 #include <limits>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "simulate/cut.h"
+#include "tests/support/accuracy_figure.h"
 #include "tests/support/cutting.h"
 
 namespace camber::simulate {
@@ -32,6 +34,7 @@ TEST(AxialSpring, APlungeFollowsItsRecurrence) {
   constexpr double kRadius = 3, kFeed = 0.04, kKrc = 700, kSpring = 6000;
   const machine::Material material{0, kKrc, 0, 0, 0, 0};
   const double g = 2 * kRadius * kKrc / kSpring;
+  tests::LargestFigure deflection("axial deflection", 0.02), force("axial force", 0.02);
   for (const double voxel : {0.1, 0.15}) {
     std::vector<removal::Stamp> stamps;
     // The first tooth passing that cuts takes a whole feed.
@@ -46,8 +49,9 @@ TEST(AxialSpring, APlungeFollowsItsRecurrence) {
     double delta = 0;
     for (std::size_t n = 4; n < stamps.size(); ++n) {
       delta = g * (kFeed + delta) / (1 + g);
-      EXPECT_NEAR(result.loads[n].contact_deflection_mm.z(), delta, 0.02 * g * kFeed) << n << ", voxel " << voxel;
-      EXPECT_NEAR(result.loads[n].force_mean_N.z(), kSpring * delta, 0.02 * kSpring * g * kFeed) << n;
+      const std::string where = fmt::format("{}, voxel {}", n, voxel);
+      deflection.expect(result.loads[n].contact_deflection_mm.z(), delta, where, g * kFeed);
+      force.expect(result.loads[n].force_mean_N.z(), kSpring * delta, where, kSpring * g * kFeed);
     }
     EXPECT_NEAR(delta, g * kFeed, 1e-3 * kFeed);
     // The chips hold what the stock has lost, displaced as the cutter was.
