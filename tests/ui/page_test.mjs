@@ -15,12 +15,22 @@ function expect(condition, sentence) {
   if (!condition) problems.push(sentence);
 }
 
-const painted = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+// Until the picture of the path, if there is one, has been drawn and shown. Of a frame too.
+const painted = page => page.evaluate(async () => {
+  do { for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame); } while (window.camberScene?.asked);
+});
 const picture = async (page, name) => { if (pictures) { await painted(page); await page.screenshot({ path: join(pictures, name) }); } };
-const checks = page => page.evaluate(() => Number(document.documentElement.dataset.checked ?? 0));
-const shown = page => page.waitForFunction(() => document.documentElement.dataset.shown, null, { timeout: 60000 });
 const ready = page => page.waitForFunction(() => document.documentElement.dataset.ready === 'all');
+// Until everything that the page has been told is written, checked and shown: the page counts it before an event's handler ends.
+const settled = page => page.waitForFunction(() => document.documentElement.dataset.busy === '0', null, { timeout: 120000 });
 const tab = (page, name) => page.click(`nav [data-tab=${name}]`);
+// act makes the page load anew.
+async function reloaded(page, act) {
+  await page.evaluate(() => { window.isOld = true; });
+  await act();
+  await page.waitForFunction(() => !window.isOld && document.documentElement.dataset.ready === 'all');
+  await settled(page);
+}
 
 // How many pixels of the path's picture have each colour that is neither grey nor the background's.
 const hues = page => page.evaluate(() => {
@@ -45,6 +55,7 @@ async function drop(page, name, bytes) {
     return transfer;
   }, { name, text: bytes.toString('latin1') });
   await page.dispatchEvent('body', 'drop', { dataTransfer: data });
+  await settled(page);
 }
 
 async function run(page, command, options = {}) {
@@ -59,10 +70,14 @@ async function run(page, command, options = {}) {
   await page.click('#start');
   await page.waitForFunction(n => document.querySelectorAll('.run').length > n, before);
 }
-const over = (page, timeout = 240000) => page.waitForFunction(() => {
-  const states = document.documentElement.dataset.runs?.split(' ') ?? [];
-  return states.length && !states.some(s => s === 'queued' || s === 'running');
-}, null, { timeout });
+// Until `count` runs have ended and their results are shown.
+async function over(page, count = 1) {
+  await page.waitForFunction(n => {
+    const states = document.documentElement.dataset.runs?.split(' ') ?? [];
+    return states.length >= n && !states.some(s => ['', 'queued', 'running'].includes(s));
+  }, count, { timeout: 240000 });
+  await settled(page);
+}
 
 // The frame with the report of a run of this command, once it has drawn itself: an iframe is in the page before it has its address.
 async function shownReport(page, command) {
@@ -74,13 +89,11 @@ async function shownReport(page, command) {
 }
 
 async function setField(page, path, value) {
-  const before = await checks(page);
   await page.locator(`[data-path="${path}"]`).fill(value);
-  await page.waitForFunction(n => Number(document.documentElement.dataset.checked) > n, before, { timeout: 60000 });
+  await settled(page);
 }
 
 const job = name => readFileSync(join(folder, name, 'job.toml'), 'utf8');
-const solids = (page, names) => page.waitForFunction(n => document.documentElement.dataset.solids === n, names, { timeout: 60000 });
 const extents = (page, name) => page.evaluate(n => { const e = window.camberScene.extents[n]; return e && [...e.low, ...e.high]; }, name);
 const near = (a, b, within) => a?.length === b.length && a.every((v, k) => Math.abs(v - b[k]) <= within);
 
@@ -91,6 +104,7 @@ async function hides(page, label) {
   await box.uncheck();
   const without = await shot();
   await box.check();
+  expect(before.equals(await shot()), `the picture is another one once ${label} is shown again`);
   return !before.equals(without);
 }
 
@@ -100,8 +114,6 @@ const CHECKS = {
     expect(/Drop an NC program/.test(await page.locator('main').innerText()), 'an empty folder does not say what to do');
     await picture(page, 'workbench-empty.png');
     await drop(page, 'ball.nc', readFileSync(file));
-    await page.waitForFunction(() => document.documentElement.dataset.checked === '1', null, { timeout: 60000 });
-    await shown(page);
     expect(existsSync(join(folder, 'ball/job.toml')), 'no job was made');
     expect(readFileSync(join(folder, 'ball/ball.nc')).equals(readFileSync(file)), 'the program arrived with other bytes');
     await painted(page);
@@ -119,15 +131,14 @@ const CHECKS = {
     await setField(page, 'stock|allowance_mm', '0.1');
     await setField(page, 'simulation|voxel_mm', '0.6');
     const guesses = Number((await page.locator('#guesses').innerText()).match(/\d+/)[0]);
-    const before = await checks(page);
     await page.getByRole('button', { name: 'Confirm tool.3 flutes', exact: true }).click();
-    await page.waitForFunction(n => Number(document.documentElement.dataset.checked) > n, before, { timeout: 60000 });
+    await settled(page);
     expect(Number((await page.locator('#guesses').innerText()).match(/\d+/)[0]) === guesses - 1, 'a confirmed value is still marked');
     await tab(page, 'text');
     const text = page.locator('#text');
     await text.fill((await text.inputValue()).replace('[compensation]\n', '[compensation]\nmax_rounds = 1\n').replace('[simulation]\n', '[simulation]\ncoupling = "rigid"\n'));
     await page.getByRole('button', { name: 'Save', exact: true }).click();
-    await page.waitForFunction(n => Number(document.documentElement.dataset.checked) > n, before + 1, { timeout: 60000 });
+    await settled(page);
     const job = readFileSync(join(folder, 'ball/job.toml'), 'utf8');
     for (const line of ['\nallowance_mm = 0.1\n', 'voxel_mm = 0.6 ', 'max_rounds = 1\n', 'coupling = "rigid"\n', 'flutes = 2\n'])
       expect(job.includes(line), `job.toml lacks "${line.trim()}":\n${job}`);
@@ -139,7 +150,6 @@ const CHECKS = {
     await page.goto('about:blank');
     await page.goto(url.replace(/\?.*/, ''));
     await ready(page);
-    await page.waitForFunction(() => document.documentElement.dataset.runs);
     await over(page);
     await tab(page, 'results');
     const report = await shownReport(page, 'compensate');
@@ -151,7 +161,7 @@ const CHECKS = {
     expect(download.suggestedFilename() === 'ball_compensated.nc', `the download is called ${download.suggestedFilename()}`);
 
     await tab(page, 'compare');
-    await page.waitForSelector('#changed');
+    await settled(page);
     expect(/[1-9]\d* places differ/.test(await page.locator('#changed').innerText()), 'no difference is shown');
     await page.getByRole('button', { name: 'Next', exact: true }).click();
     expect(await page.locator('.comparison .row.changed.selected').count() >= 1, 'Next selects no changed line');
@@ -160,8 +170,6 @@ const CHECKS = {
 
   // Lines and moves lead to each other; colours; messages at their lines; keys. FILE: a program with a warning.
   async path(page) {
-    await page.waitForFunction(() => document.documentElement.dataset.checked === '1');
-    await shown(page);
     await painted(page);
     const kinds = await hues(page);
     expect(Object.keys(kinds).length >= 2, `rapid and cutting have the colours ${JSON.stringify(kinds)}`);
@@ -187,8 +195,6 @@ const CHECKS = {
 
   async wrong_program(page) {
     await drop(page, 'bad.nc', Buffer.from('G21 G90\nT1 M6\nS100 M3\nG0 X0 Y0 Z0\nG1 X1 F0\n'));
-    await page.waitForFunction(() => document.documentElement.dataset.checked === '1');
-    await shown(page);
     expect(await page.locator('.row.error[data-line="5"]').count() === 1, 'the error does not stand at its line');
     expect(/the feed must be greater than zero/.test(await page.locator('#messages').innerText()), 'the message is missing');
     await page.locator('#messages .error').first().click();
@@ -197,24 +203,19 @@ const CHECKS = {
 
   // What is typed is judged by the commands, and only what can be read is written.
   async typing(page) {
-    await page.waitForFunction(() => document.documentElement.dataset.checked === '1');
     await tab(page, 'setup');
     const before = readFileSync(join(folder, 'wall/job.toml'), 'utf8');
-    await page.locator('[data-path="tool.1|flutes"]').fill('0');
-    await page.waitForFunction(() => /a whole number from 1 to 100/.test(document.body.innerText));
+    await setField(page, 'tool.1|flutes', '0');
+    expect(/a whole number from 1 to 100/.test(await page.locator('tr[data-tool="1"]').innerText()), 'a wrong value is not explained at its field');
     expect(readFileSync(join(folder, 'wall/job.toml'), 'utf8') === before, 'a wrong value was written');
     await setField(page, 'tool.1|flutes', '3');
     expect(readFileSync(join(folder, 'wall/job.toml'), 'utf8') === before.replace('flutes = 2', 'flutes = 3'), 'more than the value has changed');
-    await page.getByLabel('Lengths').selectOption('inch');
-    await page.waitForLoadState();
-    await ready(page);
+    await reloaded(page, () => page.getByLabel('Lengths').selectOption('inch'));
     await tab(page, 'setup');
     expect(await page.locator('[data-path="tool.1|overhang_mm"]').inputValue() === '1.181102', `30 mm are ${await page.locator('[data-path="tool.1|overhang_mm"]').inputValue()} in`);
     await setField(page, 'tool.1|overhang_mm', '1');
     expect(readFileSync(join(folder, 'wall/job.toml'), 'utf8').includes('overhang_mm = 25.4\n'), '1 in was not written as 25.4');
-    await page.getByLabel('Language').selectOption('de');
-    await page.waitForLoadState();
-    await ready(page);
+    await reloaded(page, () => page.getByLabel('Language').selectOption('de'));
     expect(/Einrichten/.test(await page.locator('nav').innerText()), 'there is no German');
     await page.getByLabel('Farben').selectOption('dark');
     const dark = await page.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).map(Number));
@@ -224,15 +225,13 @@ const CHECKS = {
 
   // The part stands where the job says, and is moved by the pointer, by keys and by numbers.
   async part(page) {
-    await solids(page, 'part');
     const place = () => /\nmove_mm = \[(.*)\]/.exec(job('wall'))?.[1].split(',').map(Number);
     const start = await extents(page, 'part');
     expect(near(start, [20, 0, -2, 28, 2, 0], 1e-4), `the part lies at ${start}`);
     expect(await hides(page, 'part'), 'the part is not in the picture');
     const moved = async act => {
-      const before = await checks(page);
       await act();
-      await page.waitForFunction(n => Number(document.documentElement.dataset.checked) > n, before, { timeout: 60000 });
+      await settled(page);
       const at = place() ?? [0, 0, 0], e = await extents(page, 'part');
       expect(near(e, start.map((v, k) => v + at[k % 3]), 1e-3), `the job moves the part by ${at}, the picture shows it at ${e}`);
       return at;
@@ -267,7 +266,7 @@ const CHECKS = {
     await page.mouse.down();
     await page.mouse.move(canvas.x + x + 50, canvas.y + y);
     await page.mouse.up();
-    await page.waitForTimeout(800);
+    await settled(page);
     expect(near(place(), rest, 0), 'the pointer moves the part without being asked to');
   },
 
@@ -275,9 +274,8 @@ const CHECKS = {
   async blanks(page) {
     const where = { left: [0, -0.5, -2, 8, 2, 0], mesh: [0, -0.5, -2, 8, 2, 0], round: [-2, -3, -2, 10, 9, 0] };
     for (const [name, box] of Object.entries(where)) {
-      await page.evaluate(() => { document.documentElement.dataset.solids = ''; });
       await page.locator(`.job[data-job="${name}/job.toml"]`).click();
-      await solids(page, 'blank');
+      await settled(page);
       const e = await extents(page, 'blank');
       expect(near(e, box, 0.21), `the blank of ${name} lies at ${e}`);
       expect(await hides(page, 'blank'), `the blank of ${name} is not in the picture`);
@@ -286,8 +284,6 @@ const CHECKS = {
 
   // FILE: the program that FOLDER/dome/p.nc was posted from: its X, Y and Z are the tip on the part.
   async rotary(page) {
-    await page.waitForFunction(() => document.documentElement.dataset.checked === '1', null, { timeout: 60000 });
-    await shown(page);
     expect(/tip on the part/.test(await page.locator('#legend').innerText()), 'it is not said that the tip is drawn');
     const places = await page.evaluate(() => Array.from(window.camberScene.place)), wanted = [];
     const now = { X: NaN, Y: NaN, Z: NaN };
@@ -307,25 +303,23 @@ const CHECKS = {
 
   // Points of FOLDER/wall/points.csv over the error map of a compensation.
   async measured(page) {
-    await page.waitForFunction(() => document.documentElement.dataset.checked === '1');
     const rows = readFileSync(join(folder, 'wall/points.csv'), 'utf8').trim().split('\n').slice(1).map(l => l.split(',').map(Number));
     await tab(page, 'run');
     await page.locator('.runs select').first().selectOption('compensate');
     await page.locator('[data-option=measured]').selectOption('wall/points.csv');
     await page.locator('[data-option=keep-anyway]').check();
     await page.click('#start');
-    await page.waitForFunction(() => document.documentElement.dataset.runs);
     await over(page);
     await tab(page, 'results');
     const report = await shownReport(page, 'compensate');
     const scene = report.locator('#scene'), canvas = scene.locator('canvas');
     await scene.scrollIntoViewIfNeeded();
-    await painted(page);
+    await painted(report);
     const { x, y, width, height } = await canvas.boundingBox(), with_points = await canvas.screenshot();
     let said = '';
     for (let k = 0; k < 900 && !/measured/.test(said); k++) {
       await page.mouse.move(x + width * (k % 45 + 0.5) / 45, y + height * (Math.floor(k / 45) + 0.5) / 20);
-      await painted(page);
+      await painted(report);
       said = await report.locator('.tip').innerText();
     }
     const value = Number(/measured ([+\u2212-]?[\d.]+) \u00b5m/.exec(said)?.[1].replace('\u2212', '-'));
@@ -335,33 +329,29 @@ const CHECKS = {
     await picture(page, 'workbench-measured.png');
     await page.mouse.move(5, 5);
     await report.locator('#part-controls').getByText('Hidden').first().click();
-    await painted(page);
+    await painted(report);
     expect(!with_points.equals(await canvas.screenshot()), 'measured points are not in the picture');
   },
 
   // Several jobs: all run, two results side by side, one cancelled.
   async shop(page) {
-    await page.waitForFunction(() => document.documentElement.dataset.checked === '1');
     expect(await page.locator('.job').count() === 3, `${await page.locator('.job').count()} jobs`);
     await page.getByLabel('Run all').selectOption('time');
-    await page.waitForFunction(() => document.documentElement.dataset.runs?.split(' ').length === 3);
-    await over(page);
-    const done = () => document.querySelectorAll('.job .state.done').length === 3;
-    expect(await page.waitForFunction(done, null, { timeout: 20000 }).then(() => true, () => false), 'not all jobs are done');
+    await over(page, 3);
+    expect(await page.locator('.job .state.done').count() === 3, 'not all jobs are done');
     await run(page, 'predict');
-    await page.waitForFunction(() => document.documentElement.dataset.runs.split(' ').length === 4);
-    await over(page);
+    await over(page, 4);
     await page.locator('.run').first().getByRole('button', { name: 'Results' }).click();
     await page.getByLabel('Beside it').selectOption('time');
     await page.waitForFunction(() => document.querySelectorAll('iframe.report').length === 2);
-    await page.waitForFunction(() => /µm/.test(document.querySelector('.job[aria-current=true] .figures').textContent));
-    for (const name of ['predict', 'time']) await shownReport(page, name);
+    expect(/µm/.test(await page.locator('.job[aria-current=true] .figures').innerText()), 'the job does not show its error');
+    for (const name of ['predict', 'time']) await painted(await shownReport(page, name));
     await picture(page, 'workbench-shop.png');
   },
 
   // FILE: a program of a million blocks. How quickly it is shown and turned is printed.
   async large(page, begun) {
-    await shown(page);
+    await page.waitForFunction(() => document.documentElement.dataset.shown, null, { timeout: 60000 });
     await painted(page);
     const shown_s = (Date.now() - begun) / 1000, rows = await page.evaluate(() => document.querySelectorAll('.row').length);
     expect(rows > 10 && rows < 200, `${rows} rows are elements`);
@@ -385,8 +375,7 @@ const CHECKS = {
   // Measured by bench/ui/run.
   async first_paint(page) {
     // In a browser that runs already: its own start is not the page's.
-    await page.reload();
-    await ready(page);
+    await reloaded(page, () => page.reload());
     await page.waitForFunction(() => performance.getEntriesByName('first-contentful-paint').length);
     const paint_ms = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0].startTime);
     writeFileSync(join(folder, 'paint.json'), JSON.stringify({ paint_ms }));
@@ -403,7 +392,7 @@ try {
   page.on('request', r => { if (!r.url().startsWith(new URL(url).origin) && !/^(blob|data|about):/.test(r.url())) problems.push(`asks for ${r.url()}`); });
   const begun = Date.now();
   await page.goto(url);
-  if (check !== 'large') await ready(page);
+  if (check !== 'large') { await ready(page); await settled(page); }
   expect(!page.url().includes('token'), `the token stays in the address: ${page.url()}`);
   expect(await page.evaluate(() => document.cookie) === '', 'scripts see the cookie');
   await CHECKS[check](page, begun);

@@ -44,23 +44,23 @@ export class Results {
 export class Comparison {
   constructor({ said }) {
     this.said = said;
-    this.before = new LineList({ picked: n => this.follow(n, true) });
-    this.after = new LineList({ picked: n => this.follow(n, false) });
+    this.before = new LineList({ label: text('before'), picked: n => this.follow(n, true) });
+    this.after = new LineList({ label: text('after'), picked: n => this.follow(n, false) });
     this.head = h('div', { className: 'bar' });
-    this.box = h('div', { className: 'comparison' }, this.head, h('div', { className: 'two' }, h('div', {}, h('h2', {}, text('before')), this.before.box), h('div', {}, h('h2', {}, text('after')), this.after.box)));
+    this.lists = h('div', { className: 'two' }, h('div', {}, h('h2', {}, text('before')), this.before.box), h('div', {}, h('h2', {}, text('after')), this.after.box));
+    this.box = h('div', { className: 'comparison' }, this.head, this.lists);
   }
 
   async show(job) {
     this.hunks = [];
     const programs = job.results.map(r => r.run.program).filter(p => p && job.results.some(r => r.files.includes(p)));
-    if (programs.length === 0 || job.programs.length !== 1) {
-      this.before.setText('');
-      this.after.setText('');
-      return clear(this.head, text('no_results'));
-    }
+    this.lists.hidden = programs.length === 0 || job.programs.length !== 1;
+    if (this.lists.hidden) return clear(this.head, h('p', { className: 'note' }, text(job.programs.length > 1 ? 'several_programs' : 'no_new_program')));
     if (!programs.includes(this.program)) this.program = programs[0];
+    const asked = this.asked = Symbol('comparison');
     try {
       const [hunks, before, after] = await Promise.all([get('api/difference', { before: job.programs[0], after: this.program }), fileText(job.programs[0]), fileText(this.program)]);
+      if (asked !== this.asked) return;
       this.before.setText(before);
       this.after.setText(after);
       this.setHunks(hunks);

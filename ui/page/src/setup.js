@@ -1,6 +1,6 @@
 // The job as a form: its settings by table, with their sources; what is guessed is marked until it is confirmed. Every
 // change goes to the server, which writes it into job.toml where the job can be read then.
-import { fileAddress, fileText, get, optionsOf, post } from './api.js';
+import { Pause, fileAddress, fileText, get, optionsOf, post } from './api.js';
 import { baseName, clear, folderName, h, select } from './dom.js';
 import { text } from './texts.js';
 import { givenValue, shownValue, unitOf } from './units.js';
@@ -33,6 +33,16 @@ export class Setup {
     this.placeDrawings();
   }
 
+  // The setting that stands in this line of job.toml, or the last one above it.
+  goTo(line) {
+    const field = this.job.fields.filter(f => f.line <= line).sort((a, b) => a.line - b.line).at(-1);
+    const input = field && this.box.querySelector(`[data-path="${CSS.escape(`${field.table}|${field.key}`)}"]`);
+    const more = input?.closest('details');
+    if (more) more.open = true;
+    input?.focus();
+    input?.scrollIntoView({ block: 'center' });
+  }
+
   field(table, key) { return this.job.fields.find(f => f.table === table && f.key === key); }
 
   async edit(...edits) {
@@ -48,8 +58,8 @@ export class Setup {
   // While somebody types: once he pauses.
   typed(input, field) {
     const path = `${field.table}|${field.key}`;
-    clearTimeout(this.waiting.get(path));
-    this.waiting.set(path, setTimeout(async () => {
+    if (!this.waiting.has(path)) this.waiting.set(path, new Pause(WAIT_MS));
+    this.waiting.get(path).then(async () => {
       const value = givenValue(field.key, input.dataset.text === 'yes' ? quoted(input.value) : input.value.replace(/\n/g, ' ').trim());
       if (value === field.value && !field.is_default) return;
       const result = await this.edit(['set', field.table, field.key, value]);
@@ -58,7 +68,7 @@ export class Setup {
       input.classList.toggle('wrong', wrong !== '');
       const says = input.closest('.field')?.querySelector('.wrong-text');
       if (says) says.textContent = wrong;
-    }, WAIT_MS));
+    });
   }
 
   input(field) {
@@ -90,7 +100,8 @@ export class Setup {
   }
 
   row(field) {
-    return h('div', { className: `field${field.guessed ? ' guessed' : ''}${field.is_default ? ' default' : ''}` },
+    const long = /[[{]/.test(field.value) || (field.key === 'machine' && field.table === '');
+    return h('div', { className: `field${field.guessed ? ' guessed' : ''}${field.is_default ? ' default' : ''}${long ? ' long' : ''}` },
       field.note ? h('p', { className: 'note' }, field.note) : null,
       h('label', {}, h('span', { className: 'key' }, field.key), this.input(field), h('span', { className: 'unit' }, unitOf(field.key))),
       h('span', { className: 'marks' }, this.marks(field)), h('span', { className: 'source' }, field.comment), h('span', { className: 'wrong-text', role: 'alert' }));
@@ -175,6 +186,7 @@ export class Setup {
   }
 
   async propose() {
+    if (!confirm(text('propose_sure'))) return;
     const library = this.library.querySelector('select').value, options = { machine: plain(this.field('', 'machine')?.value ?? '') };
     if (!options.machine.startsWith('preset:') && options.machine) options.machine = folderName(this.job.job) + options.machine;
     if (library) options.tools = folderName(this.job.job) + library;
