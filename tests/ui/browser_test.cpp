@@ -47,7 +47,23 @@ TEST_F(Page, LinksLinesWithMoves) {
   EXPECT_EQ(checked("path"), "");
 }
 
-TEST_F(Page, ShowsErrorsOfAProgramAtTheirLines) { EXPECT_EQ(checked("wrong_program"), ""); }
+TEST_F(Page, ShowsErrorsOfAProgramAtTheirLinesAndNothingOfTheJobBefore) {
+  tests::write_wall(folder_, "served/wall/");
+  EXPECT_EQ(checked("wrong_program"), "");
+}
+
+TEST_F(Page, LeadsFromAMessageToItsSetting) {
+  tests::write_wall(folder_, "served/wall/");
+  folder_.write("served/wall/job.toml", tests::replaced(tests::wall_job(), "flutes = 2", "flutes = 0"));
+  EXPECT_EQ(checked("wrong_job"), "");
+}
+
+TEST_F(Page, DrawsWhatOnlyTheJobKnowsInLettersOfWindows) { EXPECT_EQ(checked("pocket"), ""); }
+
+TEST_F(Page, HasEveryTextInGerman) {
+  tests::write_wall(folder_, "served/wall/");
+  EXPECT_EQ(checked("german"), "");
+}
 
 TEST_F(Page, JudgesWhatIsTypedAndWritesItInMillimetres) {
   tests::write_wall(folder_, "served/wall/");

@@ -2,8 +2,9 @@
 // network. Prints what went wrong and ends with status 1, or ends with 0. With CAMBER_PICTURES=FOLDER the pictures of
 // docs/guide/workbench.md are taken into that folder.
 import { createRequire } from 'node:module';
-import { existsSync, readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { existsSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
 
 const [packages, check, url, folder, file] = process.argv.slice(2);
 const { chromium } = createRequire(join(packages, 'package.json'))('playwright-core');
@@ -108,6 +109,43 @@ async function hides(page, label) {
   return !before.equals(without);
 }
 
+// Its cycle needs the radius of the tool, which the job alone knows.
+const POCKET = `0 BEGIN PGM K MM
+1 BLK FORM 0.1 Z X-20 Y-20 Z-10
+2 BLK FORM 0.2 X20 Y20 Z0
+3 TOOL CALL 2 Z S3000
+4 L Z20 R0 FMAX M3
+5 CYCL DEF 5.0 KREISTASCHE
+6 CYCL DEF 5.1 ABST2
+7 CYCL DEF 5.2 TIEFE-4
+8 CYCL DEF 5.3 ZUSTLG2 F100
+9 CYCL DEF 5.4 RADIUS12
+10 CYCL DEF 5.5 F300 DR+
+11 L X0 Y0 FMAX M99
+12 L Z20 FMAX M30 ; Gru\xdf
+13 END PGM K MM
+`;
+
+const SOURCES = join(dirname(fileURLToPath(import.meta.url)), '../../ui/page/src');
+const TEXTS = import('data:text/javascript,' + encodeURIComponent(readFileSync(join(SOURCES, 'texts.js'), 'utf8')));
+const SAME_IN_GERMAN = ['tab_text'];
+// Names of keys, values, programs, and what commands say.
+const OF_COMMANDS = '.lines, .messages li, .drawings figure, .key, .source, .field .note, .field option, .unit, .comparison b, .tools th, .tools option, .material, .files, .result table, .result a, .job b, .head, #text, .progress, h2, code, #files-beside li, #files-beside option';
+
+// What the page shows in words that are not of the table of texts, whose German ones stand between brackets.
+const untranslated = page => page.evaluate(skipped => {
+  const out = [], word = /\p{L}{3}/u, names = ['Camber', 'job.toml', 'English', 'Deutsch', 'inch'];
+  const look = (element, words) => {
+    const shown = element.closest('select') ?? element;
+    if (shown.offsetParent && word.test(words) && !words.includes('\u27e6') && !names.includes(words.trim()) && !element.closest(skipped)) out.push(words.trim());
+  };
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) look(walker.currentNode.parentElement, walker.currentNode.data);
+  for (const element of document.body.querySelectorAll('[aria-label], [title]'))
+    if (!element.dataset.path) for (const name of ['aria-label', 'title']) look(element, element.getAttribute(name) ?? '');
+  return out;
+}, OF_COMMANDS);
+
 const CHECKS = {
   // From an empty folder and a dropped program to a downloaded compensated one.
   async whole_way(page) {
@@ -191,14 +229,49 @@ const CHECKS = {
     await page.locator('#scene canvas').focus();
     await page.keyboard.press('2');
     expect(await page.locator('.setup').isVisible(), 'the key 2 does not open the set-up');
+    await page.locator('nav [data-tab=setup]').focus();
+    await page.keyboard.press('ArrowLeft');
+    expect(await page.locator('.path').isVisible(), 'the left arrow key does not open the tab at the left');
+    const asked = async answer => { page.once('dialog', d => d.accept(answer)); await page.keyboard.press('/'); return page.locator('.row.selected').getAttribute('data-line'); };
+    expect(await asked('8') === '8', 'no line is found by its number');
+    expect(await asked('x12') === '10', 'no line is found by its text');
+    const tops = await page.locator('#scene-bar > *:visible').evaluateAll(all => all.map(e => Math.round(e.getBoundingClientRect().top + e.getBoundingClientRect().height / 2)));
+    expect(Math.max(...tops) - Math.min(...tops) < 8, `the controls stand in several rows: ${tops}`);
+    expect(!await page.getByLabel('part', { exact: true }).isVisible(), 'a part is offered where there is none');
+    expect(await page.getByLabel('blank', { exact: true }).isVisible(), 'the blank cannot be hidden');
   },
 
+  // A job whose value is wrong: its message leads to the setting.
+  async wrong_job(page) {
+    await page.locator('#messages .error').first().press('Enter');
+    expect(await page.evaluate(() => document.activeElement.dataset.path) === 'tool.1|flutes', 'the message does not lead to its setting');
+  },
+
+  // A program that the job alone can draw, in letters of Windows.
+  async pocket(page) {
+    await drop(page, 'k.h', Buffer.from(POCKET, 'latin1'));
+    await painted(page);
+    expect(await drawn(page) > 300, 'the path is not drawn');
+    expect(/Gru\xdf/.test(await page.locator('.row[data-line="13"]').innerText()), 'letters of Windows are not read');
+  },
+
+  // FOLDER/wall has a job: nothing of it is shown with the program that no job can be made of.
   async wrong_program(page) {
+    await painted(page);
+    expect(await drawn(page) > 300, 'the path of the job is not drawn');
     await drop(page, 'bad.nc', Buffer.from('G21 G90\nT1 M6\nS100 M3\nG0 X0 Y0 Z0\nG1 X1 F0\n'));
+    await painted(page);
+    expect(await drawn(page) === 0, 'the path of the job before is shown');
+    expect(await page.locator('nav button:disabled').count() === 5, 'the job before can be set up and run');
+    expect(await page.locator('.job[aria-current=true]').count() === 0, 'the job before is marked');
     expect(await page.locator('.row.error[data-line="5"]').count() === 1, 'the error does not stand at its line');
     expect(/the feed must be greater than zero/.test(await page.locator('#messages').innerText()), 'the message is missing');
     await page.locator('#messages .error').first().click();
     expect(await page.locator('.row.selected').getAttribute('data-line') === '5', 'the message does not lead to its line');
+    await page.locator('.job').first().click();
+    await settled(page);
+    await painted(page);
+    expect(await drawn(page) > 300, 'the path of the job is not drawn again');
   },
 
   // What is typed is judged by the commands, and only what can be read is written.
@@ -210,8 +283,22 @@ const CHECKS = {
     expect(readFileSync(join(folder, 'wall/job.toml'), 'utf8') === before, 'a wrong value was written');
     await setField(page, 'tool.1|flutes', '3');
     expect(readFileSync(join(folder, 'wall/job.toml'), 'utf8') === before.replace('flutes = 2', 'flutes = 3'), 'more than the value has changed');
+    // Who types on while the answer comes.
+    let answered = 0;
+    const slowly = async route => { await new Promise(done => setTimeout(done, 700)); await route.continue(); answered++; };
+    await page.route('**/api/edit*', slowly);
+    const overhang = page.locator('[data-path="tool.1|overhang_mm"]');
+    await overhang.fill('3');
+    await page.waitForRequest(/api.edit/);
+    await page.keyboard.type('1');
+    await page.waitForResponse(/api.edit/);
+    await page.keyboard.type('.5');
+    await settled(page);
+    await page.unroute('**/api/edit*', slowly);
+    expect(answered >= 2 && await overhang.inputValue() === '31.5' && job('wall').includes('overhang_mm = 31.5\n'), `31.5 was typed, ${await overhang.inputValue()} is shown`);
+    await setField(page, 'tool.1|overhang_mm', '30.0');
     await reloaded(page, () => page.getByLabel('Lengths').selectOption('inch'));
-    await tab(page, 'setup');
+    expect(await page.locator('.setup').isVisible(), 'another unit leads to another tab');
     expect(await page.locator('[data-path="tool.1|overhang_mm"]').inputValue() === '1.181102', `30 mm are ${await page.locator('[data-path="tool.1|overhang_mm"]').inputValue()} in`);
     await setField(page, 'tool.1|overhang_mm', '1');
     expect(readFileSync(join(folder, 'wall/job.toml'), 'utf8').includes('overhang_mm = 25.4\n'), '1 in was not written as 25.4');
@@ -333,8 +420,39 @@ const CHECKS = {
     expect(!with_points.equals(await canvas.screenshot()), 'measured points are not in the picture');
   },
 
-  // Several jobs: all run, two results side by side, one cancelled.
+  // Both languages have every text, each of them is used, and the page shows no other words.
+  async german(page) {
+    const { TABLES: { en, de } } = await TEXTS, sources = readdirSync(SOURCES).filter(f => f.endsWith('.js')).map(f => readFileSync(join(SOURCES, f), 'utf8')).join('\n');
+    const prefixes = [...sources.matchAll(/text\('(\w+_)' \+/g)].map(m => m[1]), values = words => (words.match(/\{\d\}/g) ?? []).sort().join();
+    for (const [, key] of sources.matchAll(/\btext\('([\w-]+)'[,)]/g)) expect(key in en, `the page asks for the text ${key}, which is not there`);
+    for (const key of Object.keys(de)) expect(key in en, `${key} has no English text`);
+    for (const key of Object.keys(en)) {
+      const english = en[key], german = de[key] ?? (SAME_IN_GERMAN.includes(key) ? english : undefined);
+      expect(german !== undefined, `${key} has no German text`);
+      expect(german !== english || SAME_IN_GERMAN.includes(key), `${key} is "${english}" in German too`);
+      expect(values(german ?? english) === values(english), `${key} has other values in German`);
+      expect(prefixes.some(p => key.startsWith(p)) || sources.replace(`  ${key}: '`, '').includes(`'${key}'`), `no text ${key} is asked for`);
+    }
+    await page.route('**/page/workbench.js', async route => {
+      let script = await (await route.fetch()).text();
+      for (const words of new Set(Object.values(de))) script = ['"', "'", '`'].reduce((s, q) => s.replaceAll(q + words + q, `${q}\u27e6${words}\u27e7${q}`), script);
+      await route.fulfill({ body: script, contentType: 'text/javascript' });
+    });
+    await reloaded(page, () => page.getByLabel('Language').selectOption('de'));
+    const look = async where => { for (const words of await untranslated(page)) expect(false, `${where}: "${words}" is in no language's table`); };
+    expect(/\u27e6Einrichten\u27e7/.test(await page.locator('nav').innerText()), 'the German texts are not marked');
+    for (const name of ['path', 'setup', 'run', 'results', 'compare', 'text']) { await tab(page, name); await settled(page); await look(name); }
+    await run(page, 'compensate', { 'keep-anyway': true });
+    await over(page);
+    for (const name of ['run', 'results', 'compare']) { await tab(page, name); await settled(page); await look(`${name}, after a run`); }
+  },
+
+  // Several jobs: all run, two results side by side; the job that was clicked last is shown.
   async shop(page) {
+    await page.route('**/api/job?job=b*', async route => { await new Promise(done => setTimeout(done, 500)); await route.continue(); });
+    for (const name of ['b', 'c', 'b', 'a']) await page.locator(`.job[data-job="${name}/job.toml"]`).click();
+    await settled(page);
+    expect(/^a.job/.test(await page.locator('.head').innerText()), `a was clicked last, ${await page.locator('.head').innerText()} is shown`);
     expect(await page.locator('.job').count() === 3, `${await page.locator('.job').count()} jobs`);
     await page.getByLabel('Run all').selectOption('time');
     await over(page, 3);

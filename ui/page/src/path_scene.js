@@ -86,6 +86,7 @@ export class PathScene {
   clear() {
     if (this.lines) { this.things.remove(this.lines, this.coarse); this.lines.geometry.dispose(); this.coarse.geometry.dispose(); }
     this.lines = this.coarse = this.path = this.extents.path = null;
+    this.tip.hidden = true;
     this.mark(null);
     this.setBox(null);
     this.setPart(null);
