@@ -35,6 +35,16 @@ class Page : public ::testing::Test {
 };
 class PageSlow : public Page {};
 
+/// A block from `low` to `high`.
+std::string block_stl(const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
+  TriangleMesh out;
+  for (int i = 0; i < 8; ++i)
+    out.points.emplace_back((i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z());
+  out.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return stl_text(out);
+}
+
 TEST_F(PageSlow, LeadsFromADroppedProgramToTheCompensatedOneOfTheCommandLine) {
   EXPECT_EQ(checked("whole_way", tests::data_path("nc/fusion_parallel_ball_inch.nc")), "");
   const auto by_hand = tests::run_camber(folder_, "compensate served/ball/job.toml -o by_hand.nc --keep-anyway");
@@ -62,22 +72,18 @@ TEST_F(Page, DrawsWhatOnlyTheJobKnowsInLettersOfWindows) { EXPECT_EQ(checked("po
 
 TEST_F(Page, HasEveryTextInGerman) {
   tests::write_wall(folder_, "served/wall/");
+  folder_.write("served/wall/part.stl", block_stl({0, 0, -2}, {8, 2, 0}));
+  const std::string way = "S3000 M3\nG0 X-4. Y-2.\nG0 Z-1.\nG1 X2. F600\nG0 Z5.\n", job = tests::wall_job();
+  folder_.write("served/wall/p.nc", tests::replaced(tests::kWallProgram, "M30", "T2 M6\n" + way + "M30"));
+  const auto from = job.find("[tool.1]"), to = job.find("[material]");
+  folder_.write("served/wall/job.toml",
+                job + tests::replaced(job.substr(from, to - from), "tool.1", "tool.2") + "[part]\nmesh = \"part.stl\"\n");
   EXPECT_EQ(checked("german"), "");
 }
 
 TEST_F(Page, JudgesWhatIsTypedAndWritesItInMillimetres) {
   tests::write_wall(folder_, "served/wall/");
   EXPECT_EQ(checked("typing"), "");
-}
-
-/// A block from `low` to `high`.
-std::string block_stl(const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
-  TriangleMesh out;
-  for (int i = 0; i < 8; ++i)
-    out.points.emplace_back((i & 1 ? high : low).x(), (i & 2 ? high : low).y(), (i & 4 ? high : low).z());
-  out.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return stl_text(out);
 }
 
 TEST_F(Page, MovesThePartIntoItsPlaceByEye) {

@@ -52,7 +52,7 @@ const drawn = async page => Object.values(await hues(page)).reduce((a, b) => a +
 async function drop(page, name, bytes) {
   const data = await page.evaluateHandle(({ name, text }) => {
     const transfer = new DataTransfer();
-    transfer.items.add(new File([text], name));
+    transfer.items.add(new File([Uint8Array.from(text, c => c.charCodeAt(0))], name));
     return transfer;
   }, { name, text: bytes.toString('latin1') });
   await page.dispatchEvent('body', 'drop', { dataTransfer: data });
@@ -97,6 +97,12 @@ async function setField(page, path, value) {
 const job = name => readFileSync(join(folder, name, 'job.toml'), 'utf8');
 const extents = (page, name) => page.evaluate(n => { const e = window.camberScene.extents[n]; return e && [...e.low, ...e.high]; }, name);
 const near = (a, b, within) => a?.length === b.length && a.every((v, k) => Math.abs(v - b[k]) <= within);
+
+// Of the controls above the picture; they must not take its height.
+async function inOneRow(page) {
+  const middles = await page.locator('#scene-bar > *:visible').evaluateAll(all => all.map(e => e.getBoundingClientRect()).filter(b => b.width).map(b => b.top + b.height / 2));
+  expect(Math.max(...middles) - Math.min(...middles) < 8, `the controls stand in several rows: ${middles}`);
+}
 
 // Whether the picture has changed when the box of this label is switched off; it is switched on again.
 async function hides(page, label) {
@@ -235,8 +241,6 @@ const CHECKS = {
     const asked = async answer => { page.once('dialog', d => d.accept(answer)); await page.keyboard.press('/'); return page.locator('.row.selected').getAttribute('data-line'); };
     expect(await asked('8') === '8', 'no line is found by its number');
     expect(await asked('x12') === '10', 'no line is found by its text');
-    const tops = await page.locator('#scene-bar > *:visible').evaluateAll(all => all.map(e => Math.round(e.getBoundingClientRect().top + e.getBoundingClientRect().height / 2)));
-    expect(Math.max(...tops) - Math.min(...tops) < 8, `the controls stand in several rows: ${tops}`);
     expect(!await page.getByLabel('part', { exact: true }).isVisible(), 'a part is offered where there is none');
     expect(await page.getByLabel('blank', { exact: true }).isVisible(), 'the blank cannot be hidden');
   },
@@ -420,7 +424,8 @@ const CHECKS = {
     expect(!with_points.equals(await canvas.screenshot()), 'measured points are not in the picture');
   },
 
-  // Both languages have every text, each of them is used, and the page shows no other words.
+  // Both languages have every text, each of them is used, and the page shows no other words. FOLDER/wall has two tools
+  // and a part.
   async german(page) {
     const { TABLES: { en, de } } = await TEXTS, sources = readdirSync(SOURCES).filter(f => f.endsWith('.js')).map(f => readFileSync(join(SOURCES, f), 'utf8')).join('\n');
     const prefixes = [...sources.matchAll(/text\('(\w+_)' \+/g)].map(m => m[1]), values = words => (words.match(/\{\d\}/g) ?? []).sort().join();
@@ -439,12 +444,17 @@ const CHECKS = {
       await route.fulfill({ body: script, contentType: 'text/javascript' });
     });
     await reloaded(page, () => page.getByLabel('Language').selectOption('de'));
+    await page.unroute('**/page/workbench.js');
     const look = async where => { for (const words of await untranslated(page)) expect(false, `${where}: "${words}" is in no language's table`); };
     expect(/\u27e6Einrichten\u27e7/.test(await page.locator('nav').innerText()), 'the German texts are not marked');
     for (const name of ['path', 'setup', 'run', 'results', 'compare', 'text']) { await tab(page, name); await settled(page); await look(name); }
     await run(page, 'compensate', { 'keep-anyway': true });
     await over(page);
     for (const name of ['run', 'results', 'compare']) { await tab(page, name); await settled(page); await look(`${name}, after a run`); }
+    await tab(page, 'path');
+    await reloaded(page, () => page.reload());
+    for (const name of ['Werkzeug', 'Fertigteil', 'Rohteil']) expect(await page.locator('#scene-bar').getByLabel(name, { exact: true }).isVisible(), `${name} is not offered`);
+    await inOneRow(page);
   },
 
   // Several jobs: all run, two results side by side; the job that was clicked last is shown.
