@@ -179,9 +179,10 @@ std::string page_of(const CompensatedJob& done, const std::string& output, const
   const auto after = motion::simulate_motion(SourceText(job.program, result.emitted.text), emitted_job, {}, ignored);
   std::optional<nc::Interpretation> from;
   if (!result.passes.text.empty()) from = machined(SourceText(job.program, result.passes.text)).moves_in_part();
-  report::ReportData data = report::compensate_report(job, result, {before, rows(before), result.surfaces.loads_before},
-                                                      {after, rows(after), result.surfaces.loads_after}, output,
-                                                      diagnostics, from ? &*from : nullptr);
+  const auto& s = result.surfaces;
+  report::ReportData data = report::compensate_report(
+      job, result, {before, rows(before), s.loads_before, s.chatter_before},
+      {after, rows(after), s.loads_after, s.chatter_after}, output, diagnostics, from ? &*from : nullptr);
   report::add_measured(data, measured);
   return report::html_report(data);
 }

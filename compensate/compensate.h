@@ -176,7 +176,8 @@ struct UncertaintyFigures {
 struct Surfaces {
   std::vector<removal::SurfacePoint> before, after;            ///< the same points, in the same order
   std::vector<simulate::StampLoad> loads_before, loads_after;  ///< loads of the given and of the emitted program
-  removal::StockShape stock;                                   ///< left by the target program, for a picture
+  std::vector<simulate::ChatterMargins::Passage> chatter_before, chatter_after;
+  removal::StockShape stock;  ///< left by the target program, for a picture
 };
 
 struct CompensationResult {

@@ -255,6 +255,7 @@ State measure_given(Task& task, CompensationResult& out) {
   out.figures.feed_before = task.setup->program.feed;
   out.surfaces.before = given->surface;
   out.surfaces.loads_before = given->loads;
+  out.surfaces.chatter_before = given->chatter;
   out.safety.own_depth_limit = task.job.compensation.depth_limit_um().has_value();
   out.safety.depth_limit_um = task.given.depth_limit_um;
   out.safety.before = depth_of(given->surface, given->observed, task.given.depth_limit_um, true);

@@ -270,6 +270,7 @@ void conclude(const Task& task, State& state, bool better, CompensationResult& o
   const SimulatedProgram &given = task.setup->program, &program = program_of(version, best);
   out.surfaces.after = best.surface;
   out.surfaces.loads_after = best.loads;
+  out.surfaces.chatter_after = best.chatter;
   out.passes = second_cuts(task, state);
   if (version.repeated) out.pass_before = version.repeated->pass_before;
   if (best.emitted)

@@ -8,6 +8,7 @@ namespace camber::compensate {
 void Trial::keep(simulate::Prediction prediction) {
   surface = std::move(prediction.surface);
   loads = std::move(prediction.cut.loads);
+  chatter = std::move(prediction.chatter.passages);
   total_mm = std::move(prediction.total_error_mm);
   static_rounds = prediction.cut.rounds_max;
   unsettled = prediction.cut.unsettled;

@@ -31,6 +31,7 @@ struct Trial {
   std::shared_ptr<const Emitted> emitted;      ///< none: the given program
   std::vector<removal::SurfacePoint> surface;  ///< the same points in the same order, whatever the shifts
   std::vector<simulate::StampLoad> loads;
+  std::vector<simulate::ChatterMargins::Passage> chatter;
   std::vector<double> total_mm;  ///< error against the part's mesh, one per point; empty without a mesh
   int static_rounds = 0;
   std::size_t unsettled = 0;

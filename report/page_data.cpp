@@ -151,6 +151,7 @@ Json run_json(const PathRun& run, const ReportOptions& options, bool poses, Pack
                                                                     {"force", &PathRow::force_N},
                                                                     {"deflection", &PathRow::deflection_um},
                                                                     {"chip", &PathRow::chip_um},
+                                                                    {"margin", &PathRow::margin},
                                                                     {"error", &PathRow::error_um},
                                                                     {"shift", &PathRow::shift_um}};
   for (const auto& [name, field] : kColumns) {

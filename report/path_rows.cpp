@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "base/units.h"
 
@@ -13,8 +14,9 @@ namespace {
 
 using simulate::StampLoad;
 
-constexpr std::array kQuantities{&PathRow::feed_mm_per_min, &PathRow::force_N,  &PathRow::deflection_um,
-                                 &PathRow::chip_um,         &PathRow::error_um, &PathRow::shift_um};
+constexpr std::array kQuantities{&PathRow::feed_mm_per_min, &PathRow::force_N, &PathRow::deflection_um,
+                                 &PathRow::chip_um,         &PathRow::margin,  &PathRow::error_um,
+                                 &PathRow::shift_um};
 
 /// A tooth later than this many passings after the one before begins a new cut.
 constexpr double kLatestPassings = 1.5;
@@ -129,13 +131,15 @@ std::vector<PathRow> rows_of_cut(std::vector<PathRow> rows, const removal::Stamp
   return rows;
 }
 
-void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const StampLoad> loads) {
+void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const StampLoad> loads,
+               std::span<const simulate::ChatterMargins::Passage> chatter) {
   if (loads.size() != path.stamps.size()) return;
   for_each_row_stamps(rows, path.stamps, [&](PathRow& row, std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       raise(row.force_N, loads[k].lateral_max_N);
       raise(row.deflection_um, 1000 * loads[k].contact_deflection_mm.norm());
       raise(row.chip_um, 1000 * loads[k].chip_max_mm);
+      if (k < chatter.size() && chatter[k].margin > 0) raise(row.margin, chatter[k].margin);
     }
   });
 }
@@ -153,17 +157,14 @@ void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,
 }
 
 std::vector<std::size_t> rows_to_draw(std::span<const PathRow> rows, std::size_t max_rows) {
-  std::vector<std::size_t> kept;
-  if (rows.size() <= max_rows) {
-    kept.resize(rows.size());
-    std::iota(kept.begin(), kept.end(), std::size_t{0});
-    return kept;
-  }
+  std::vector<std::size_t> kept(rows.size() <= max_rows ? rows.size() : 0);
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  if (rows.size() <= max_rows) return kept;
   const std::size_t runs = std::max<std::size_t>(1, max_rows / (2 * kQuantities.size() + 1));
   const std::size_t length = (rows.size() + runs - 1) / runs;
   for (std::size_t from = 0; from < rows.size(); from += length) {
     const std::size_t to = std::min(rows.size(), from + length);
-    std::vector<std::size_t> of_run{from};
+    std::set<std::size_t> of_run{from};
     for (const auto q : kQuantities) {
       std::size_t least = to, greatest = to;
       for (std::size_t i = from; i < to; ++i) {
@@ -171,10 +172,8 @@ std::vector<std::size_t> rows_to_draw(std::span<const PathRow> rows, std::size_t
         if (least == to || rows[i].*q < rows[least].*q) least = i;
         if (greatest == to || rows[i].*q > rows[greatest].*q) greatest = i;
       }
-      if (least != to) of_run.insert(of_run.end(), {least, greatest});
+      if (least != to) of_run.insert({least, greatest});
     }
-    std::sort(of_run.begin(), of_run.end());
-    of_run.erase(std::unique(of_run.begin(), of_run.end()), of_run.end());
     kept.insert(kept.end(), of_run.begin(), of_run.end());
   }
   if (kept.back() + 1 != rows.size()) kept.push_back(rows.size() - 1);

@@ -25,6 +25,7 @@ struct PathRow {
   double force_N = kNothingHere;        ///< greatest lateral force
   double deflection_um = kNothingHere;  ///< at the contact's height
   double chip_um = kNothingHere;        ///< thickest chip
+  double margin = kNothingHere;         ///< greatest depth over critical depth; above 1 the cut chatters
   double error_um = kNothingHere;       ///< error of greatest magnitude of the surface made here
   double shift_um = kNothingHere;       ///< distance from the path of the given program
   // Of programs with rotary motion.
@@ -70,8 +71,9 @@ std::vector<PathRow> rows_of_program(const simulate::SimulatedProgram& program, 
 std::vector<PathRow> rows_of_cut(std::vector<PathRow> rows, const removal::StampPath& path);
 
 /// Gives each row the loads of the stamps from it to the next row (or, where there is none, of the last one, if the
-/// next is the following tooth passing). `loads`: one per stamp, or none.
-void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const simulate::StampLoad> loads);
+/// next is the following tooth passing). `loads` and `chatter`: one per stamp, or none.
+void add_loads(std::vector<PathRow>& rows, const removal::StampPath& path, std::span<const simulate::StampLoad> loads,
+               std::span<const simulate::ChatterMargins::Passage> chatter);
 
 /// Gives the rows the error of greatest magnitude of the surface that their stamps made.
 void add_errors(std::vector<PathRow>& rows, const removal::StampPath& path,

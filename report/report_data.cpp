@@ -233,7 +233,7 @@ ReportData predict_report(const machine::Job& job, const SimulatedProgram& progr
   data.voxel_mm = job.simulation.voxel_mm;
   add_stock(data, stock);
   rows = shown_rows(data, job, program, std::move(rows));
-  add_loads(rows, program.path, p.cut.loads);
+  add_loads(rows, program.path, p.cut.loads, p.chatter.passages);
   add_errors(rows, program.path, p.surface);
   if (turns(rows)) data.machine = machine_view(job, rows);
   data.path.push_back({"", program.text().source.text(), std::move(rows)});
@@ -265,7 +265,7 @@ void add_traced(ReportData& data, const SimulatedProgram& program, const simulat
                     return sample;
                   }};
   data.path.back().name = data.names[1];
-  add_loads(model_rows, t.model.path, t.predicted.cut.loads);
+  add_loads(model_rows, t.model.path, t.predicted.cut.loads, t.predicted.chatter.passages);
   add_errors(model_rows, t.model.path, t.predicted.surface);
   data.path.insert(data.path.begin(), {data.names[0], program.text().source.text(), std::move(model_rows)});
   data.tables.insert(data.tables.begin(), traced_table(program, p, t));
@@ -308,7 +308,7 @@ ReportData compensate_report(const machine::Job& job, const compensate::Compensa
   add_shifts(after.rows, after.program.moves_in_part(), shifted_from ? *shifted_from : before.program.moves_in_part());
   for (CompensatedRun* run : {&before, &after}) {
     run->rows = shown_rows(data, job, run->program, std::move(run->rows));
-    add_loads(run->rows, run->program.path, run->loads);
+    add_loads(run->rows, run->program.path, run->loads, run->chatter);
     add_errors(run->rows, run->program.path, run == &before ? c.surfaces.before : c.surfaces.after);
     if (!data.machine && turns(run->rows)) data.machine = machine_view(job, run->rows);
     data.path.push_back({run == &before ? "before" : "after", run->program.text().source.text(), std::move(run->rows)});

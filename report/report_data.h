@@ -37,6 +37,7 @@ struct CompensatedRun {
   std::vector<PathRow> rows;
   /// One per stamp of `program`; none: the page has no forces of this run.
   std::span<const simulate::StampLoad> loads{};
+  std::span<const simulate::ChatterMargins::Passage> chatter{};  ///< the same
 };
 
 /// `result` and both programs must outlive what comes back.

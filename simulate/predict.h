@@ -52,13 +52,13 @@ struct Target {
   std::optional<removal::Stock> whole{};  ///< the stock before the allowance was removed; empty: `blank`
   std::vector<PathFraction> stamps{};     ///< the nominal path's, on the target program's moves
   std::vector<float> contour_mm{};        ///< one per point of a SurfaceMap of this target; see Prediction::surface
-  std::optional<ContourParts> contour_parts{};      ///< not given: the contour error is small, or rotary axes turn
-  double unseen_mm2 = 0;                            ///< area of the nominal surface without a point
-  MemoryEstimate memory{};                          ///< of a prediction
-  SurfaceRegion region{};                           ///< what of the nominal surface is judged
-  std::optional<removal::SurfaceMap> map{};         ///< points of the nominal surface, without marks
-  std::shared_ptr<const PartSurvey> part_yields{};  ///< along the target's path; null: the part is rigid
-  std::shared_ptr<CriticalDepths> critical_depths;  ///< found so far, for the predictions against this target
+  std::optional<ContourParts> contour_parts{};        ///< not given: the contour error is small, or rotary axes turn
+  double unseen_mm2 = 0;                              ///< area of the nominal surface without a point
+  MemoryEstimate memory{};                            ///< of a prediction
+  SurfaceRegion region{};                             ///< what of the nominal surface is judged
+  std::optional<removal::SurfaceMap> map{};           ///< points of the nominal surface, without marks
+  std::shared_ptr<const PartSurvey> part_yields{};    ///< along the target's path; null: the part is rigid
+  std::shared_ptr<CriticalDepths> critical_depths{};  ///< found so far, for predictions against this target
   const removal::Stock& solid() const { return whole ? *whole : blank; }
 };
 

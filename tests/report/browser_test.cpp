@@ -51,6 +51,7 @@ PathRun run_of(const std::string& name, double shift_mm) {
       row.feed_command_mm_per_min = 900;
       row.feed_mm_per_min = 600;
       row.force_N = 20 + n;
+      row.margin = 0.03 * n;
       row.error_um = 2;
       if (shift_mm > 0) row.shift_um = 1000 * shift_mm;
       run.rows.push_back(row);
@@ -201,6 +202,7 @@ ReportData large() {
         row.force_N = 20 + random();
         row.deflection_um = 20 + random();
         row.chip_um = 20 + random();
+        row.margin = random();
         row.error_um = random();
         row.shift_um = 20 + random();
         run.rows.push_back(row);

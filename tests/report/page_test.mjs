@@ -135,6 +135,8 @@ const CHECKS = {
     await page.getByLabel('Path').selectOption('force');
     const path = await pixels(page);
     expect(path.drawn > 0.05 * path.all, 'the path does not appear');
+    await page.getByLabel('Path').selectOption('margin');
+    expect((await page.locator('#legends').innerText()).startsWith('path: chatter margin\n0\n'), `the legend reads "${await page.locator('#legends').innerText()}"`);
     await page.click('button[data-value=before]');
     await page.getByLabel('Path').selectOption('');
 
@@ -146,6 +148,9 @@ const CHECKS = {
     expect(chosen.line === '13', `a click at 10.5 s selects line ${chosen.line}, not 13`);
     expect(chosen.text === 'line 13 before N13 G1 X10.', `the line reads "${chosen.text}"`);
     expect(/feed 600 of 900 mm\/min/.test(chosen.facts), `its facts are "${chosen.facts}"`);
+    expect(/chatter margin 0\.30(?! ?[\d.])/.test(chosen.facts), `its facts are "${chosen.facts}"`);
+    const heads = await page.locator('.plot-title').allInnerTexts();
+    expect(heads.includes('depth over critical depth, above 1 chatter'), `the plots are "${heads}"`);
     expect(await page.locator('.marker').isVisible(), 'the place is not marked on the part');
 
     // Back from the part: its middle is at X15, where lines 17 and 18 meet.

@@ -50,6 +50,7 @@ TEST(PathRows, TakeTheLoadsOfTheirStamps) {
   // the first and after the last.
   removal::StampPath path;
   std::vector<simulate::StampLoad> loads;
+  std::vector<simulate::ChatterMargins::Passage> chatter;
   for (int k = 0; k < 4; ++k) {
     removal::Stamp stamp;
     stamp.t_s = 0.021 + 0.015 * k;
@@ -60,15 +61,18 @@ TEST(PathRows, TakeTheLoadsOfTheirStamps) {
     load.contact_deflection_mm = Vec3(0.003, 0.004, 0);
     load.chip_max_mm = 0.05;
     loads.push_back(load);
+    chatter.push_back({k == 2 ? 0.0f : 0.25f * static_cast<float>(4 - k), 500});  // 2: no cut
   }
-  add_loads(rows, path, loads);
+  add_loads(rows, path, loads, chatter);
   const double nan = kNothingHere;
   const std::vector<double> expected{nan, nan, 10, 11, 11, 12, 13, nan, nan, nan};
+  const std::vector<double> margins{nan, nan, 1, 0.75, 0.75, nan, 0.25, nan, nan, nan};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (std::isnan(expected[i])) {
       EXPECT_TRUE(std::isnan(rows[i].force_N)) << i;
     } else {
       EXPECT_EQ(rows[i].force_N, expected[i]) << i;
+      EXPECT_TRUE(rows[i].margin == margins[i] || (std::isnan(rows[i].margin) && std::isnan(margins[i]))) << i;
       EXPECT_DOUBLE_EQ(rows[i].deflection_um, 5) << i;
       EXPECT_DOUBLE_EQ(rows[i].chip_um, 50) << i;
     }

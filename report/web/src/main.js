@@ -6,7 +6,7 @@ import { Chain } from './chain.js';
 import { DIVERGING, SEQUENTIAL, gradient } from './colours.js';
 import { programBytes, readPage } from './data.js';
 import { Plots } from './plots.js';
-import { QUANTITIES, present } from './quantities.js';
+import { QUANTITIES, present, withUnit } from './quantities.js';
 import { PartScene } from './scene.js';
 import { choice, element, fixed, menu, niceLimit, signed } from './text.js';
 
@@ -129,7 +129,7 @@ class Page {
   // Ranges of the path's colours: the greatest of all runs, so that before and after compare.
   range(quantity) {
     if (QUANTITIES[quantity].diverging) return [-this.limit, this.limit];
-    let most = 0;
+    let most = QUANTITIES[quantity].border ?? 0;
     for (const r of this.page.runs)
       for (let i = 0; r[quantity] && i < r.t.length; i++) if (r.cutting[i] > 0.5 && r[quantity][i] > most) most = r[quantity][i];
     return [0, niceLimit(most)];
@@ -142,7 +142,7 @@ class Page {
     scene.setPath(run, known, known && this.range(known), known && QUANTITIES[known].diverging);
     const legends = [];
     if (mode !== 'plain') legends.push(this.legend(LEGENDS[mode] || 'form error, \u00b5m', DIVERGING, [-limit, limit]));
-    if (known) legends.push(this.legend(`path: ${QUANTITIES[known].name}, ${QUANTITIES[known].unit}`, QUANTITIES[known].diverging ? DIVERGING : SEQUENTIAL, this.range(known)));
+    if (known) legends.push(this.legend('path: ' + withUnit(QUANTITIES[known].name, QUANTITIES[known]), QUANTITIES[known].diverging ? DIVERGING : SEQUENTIAL, this.range(known)));
     if (quantity && !known) legends.push(element('span', { textContent: `${QUANTITIES[quantity].name} is not known for this program` }));
     byId('legends').replaceChildren(...legends);
   }
@@ -179,7 +179,7 @@ class Page {
     const place = (point !== undefined ? this.page.measured : vertex !== undefined ? this.page.surface : this.page.runs[run]).place;
     const block = vertex !== undefined ? (this.page.surface.block[run] || this.page.surface.block[0])[vertex] : this.page.runs[run].block[found.row];
     const what = point !== undefined ? `measured ${signed(this.page.measured.error[point], 2)} \u00b5m; predicted ${this.errors(vertex)}` : vertex !== undefined ? this.errors(vertex)
-      : `${QUANTITIES[this.quantity].name} ${fixed(this.page.runs[run][this.quantity][found.row], QUANTITIES[this.quantity].decimals)} ${QUANTITIES[this.quantity].unit}`;
+      : `${QUANTITIES[this.quantity].name} ${fixed(this.page.runs[run][this.quantity][found.row], QUANTITIES[this.quantity].decimals)} ${QUANTITIES[this.quantity].unit}`.trim();
     const text = block ? await this.line(run, block) : '';
     tip.replaceChildren(element('b', { textContent: what }),
       element('div', { textContent: ['X', 'Y', 'Z'].map((n, k) => n + fixed(place[at + k], 3)).join('  ') }),
@@ -230,7 +230,7 @@ class Page {
     const r = this.page.runs[selected.run], i = selected.row, line = r.block[i];
     const facts = [['time', `${fixed(r.t[i], 3)} s`], ['at', ['X', 'Y', 'Z'].map((n, k) => n + fixed(r.place[3 * i + k], 3)).join(' ')],
       ['feed', `${fixed(r.feed[i], 0)} of ${fixed(r.command[i], 0)} mm/min`]];
-    for (const q of present([r])) if (q !== 'feed' && Number.isFinite(r[q][i])) facts.push([QUANTITIES[q].name, `${q === 'error' ? signed(r[q][i], 2) : fixed(r[q][i], QUANTITIES[q].decimals)} ${QUANTITIES[q].unit}`]);
+    for (const q of present([r])) if (q !== 'feed' && Number.isFinite(r[q][i])) facts.push([QUANTITIES[q].name, `${q === 'error' ? signed(r[q][i], 2) : fixed(r[q][i], QUANTITIES[q].decimals)} ${QUANTITIES[q].unit}`.trim()]);
     if (this.chain) facts.splice(2, 0, ['axes', Object.entries(this.rotary(selected)).map(([l, v]) => l + fixed(v, 3)).join(' ')]);
     const text = await this.line(selected.run, line);
     box.replaceChildren(

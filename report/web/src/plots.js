@@ -1,6 +1,6 @@
 // Curves along the program's time, one below the other with one time axis.
 import uPlot from 'uplot';
-import { QUANTITIES, present } from './quantities.js';
+import { QUANTITIES, present, withUnit } from './quantities.js';
 import { MINUS, element, fixed, niceLimit } from './text.js';
 
 const COLOURS = ['#1668b8', '#d9622b'], GREY = '#9aa5b1', MARK = '#1d2733';
@@ -57,10 +57,10 @@ export class Plots {
   }
 
   plot(quantity, last) {
-    const { plot: title, unit, decimals } = QUANTITIES[quantity], { runs } = this;
+    const { plot: title, decimals, border } = QUANTITIES[quantity], { runs } = this;
     const series = seriesOf(runs, quantity).sort((a, b) => a.run - b.run);
     const live = series.map(s => element('b'));
-    const head = element('div', { className: 'plot-head' }, element('span', { className: 'plot-title', textContent: `${title}, ${unit}` }),
+    const head = element('div', { className: 'plot-head' }, element('span', { className: 'plot-title', textContent: withUnit(title, QUANTITIES[quantity]) }),
       ...series.map((s, i) => {
         if (!s.name) return element('span', { className: 'key' }, live[i]);
         const swatch = element('i');
@@ -75,7 +75,7 @@ export class Plots {
     const u = new uPlot({
       width: this.width(), height: HEIGHT + (last ? AXIS_HEIGHT : 0), legend: { show: false },
       cursor: { sync: { key: 'path' }, y: false, drag: { x: true, y: false }, points: { size: 6 }, focus: { prox: -1 } },
-      scales: { x: { time: false }, y: { range: top ? [0, top] : (_, low, high) => uPlot.rangeNum(Math.min(low, 0), Math.max(high, 0), 0.08, true) } },
+      scales: { x: { time: false }, y: { range: top ? [0, top] : (_, low, high) => uPlot.rangeNum(Math.min(low, 0), Math.max(high, border ?? 0), 0.08, true) } },
       axes: [{ ...axis, show: true, size: last ? AXIS_HEIGHT - 18 : 4, values: last ? undefined : () => [],
         ...(last ? { label: 'machine time, s', labelSize: 18, labelFont: '12px system-ui, sans-serif' } : {}) },
         { ...axis, size: 56, values: (_, values) => values.map(v => String(v).replace('-', MINUS)) }],
@@ -83,7 +83,7 @@ export class Plots {
       hooks: {
         setCursor: [p => series.forEach((s, i) => { live[i].textContent = this.valueAt(p, i + 1, decimals); })],
         setScale: [(p, key) => { if (key === 'x') this.zoom(p); }],
-        draw: [p => this.drawSelected(p)],
+        draw: [p => this.drawSelected(p), p => this.drawBorder(p, border)],
       },
     }, table(runs, series), holder);
     this.listen(u);
@@ -135,13 +135,23 @@ export class Plots {
   drawSelected(u) {
     if (this.selected === null) return;
     const x = Math.round(u.valToPos(this.selected, 'x', true)), { left, top, width, height } = u.bbox, g = u.ctx;
-    if (x < left || x > left + width) return;
+    if (x >= left && x <= left + width) this.drawLine(g, x, top, x, top + height);
+  }
+
+  drawBorder(u, value) {
+    if (value === undefined) return;
+    const y = Math.round(u.valToPos(value, 'y', true)), { left, width } = u.bbox;
+    this.drawLine(u.ctx, left, y, left + width, y, [6, 4]);
+  }
+
+  drawLine(g, ...[fromX, fromY, toX, toY, dashes = []]) {
     g.save();
     g.strokeStyle = MARK;
     g.lineWidth = devicePixelRatio;
+    g.setLineDash(dashes);
     g.beginPath();
-    g.moveTo(x, top);
-    g.lineTo(x, top + height);
+    g.moveTo(fromX, fromY);
+    g.lineTo(toX, toY);
     g.stroke();
     g.restore();
   }
