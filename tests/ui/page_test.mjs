@@ -104,6 +104,12 @@ async function inOneRow(page) {
   expect(Math.max(...middles) - Math.min(...middles) < 8, `the controls stand in several rows: ${middles}`);
 }
 
+// Nothing is cut off at the right.
+async function fits(page, where) {
+  const beyond = await page.locator('main').evaluate(e => e.scrollWidth - e.clientWidth);
+  expect(beyond <= 0, `${where}: the page is ${beyond} pixels too wide`);
+}
+
 // Whether the picture has changed when the box of this label is switched off; it is switched on again.
 async function hides(page, label) {
   const box = page.locator('#scene-bar label', { hasText: label }).locator('input[type=checkbox]').first(), shot = async () => { await painted(page); return page.locator('#scene canvas').screenshot(); };
@@ -292,10 +298,11 @@ const CHECKS = {
     const slowly = async route => { await new Promise(done => setTimeout(done, 700)); await route.continue(); answered++; };
     await page.route('**/api/edit*', slowly);
     const overhang = page.locator('[data-path="tool.1|overhang_mm"]');
+    const asked = page.waitForRequest(/api.edit/), answer = page.waitForResponse(/api.edit/);
     await overhang.fill('3');
-    await page.waitForRequest(/api.edit/);
+    await asked;
     await page.keyboard.type('1');
-    await page.waitForResponse(/api.edit/);
+    await answer;
     await page.keyboard.type('.5');
     await settled(page);
     await page.unroute('**/api/edit*', slowly);
@@ -445,7 +452,10 @@ const CHECKS = {
     });
     await reloaded(page, () => page.getByLabel('Language').selectOption('de'));
     await page.unroute('**/page/workbench.js');
-    const look = async where => { for (const words of await untranslated(page)) expect(false, `${where}: "${words}" is in no language's table`); };
+    const look = async where => {
+      await fits(page, where);
+      for (const words of await untranslated(page)) expect(false, `${where}: "${words}" is in no language's table`);
+    };
     expect(/\u27e6Einrichten\u27e7/.test(await page.locator('nav').innerText()), 'the German texts are not marked');
     for (const name of ['path', 'setup', 'run', 'results', 'compare', 'text']) { await tab(page, name); await settled(page); await look(name); }
     await run(page, 'compensate', { 'keep-anyway': true });
@@ -474,6 +484,7 @@ const CHECKS = {
     await page.waitForFunction(() => document.querySelectorAll('iframe.report').length === 2);
     expect(/µm/.test(await page.locator('.job[aria-current=true] .figures').innerText()), 'the job does not show its error');
     for (const name of ['predict', 'time']) await painted(await shownReport(page, name));
+    await fits(page, 'two results');
     await picture(page, 'workbench-shop.png');
   },
 

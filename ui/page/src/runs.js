@@ -65,7 +65,7 @@ export class Runs {
   row(run) {
     const on = run.state === 'running', waits = run.state === 'queued', over = !on && !waits;
     const out = h('div', { className: `run ${run.state}`, data: { run: run.id, state: run.state } },
-      h('span', { className: 'state' }, stateText(run.state)), h('span', { className: 'what' }, `${text('command_' + run.command)} · ${run.job}`),
+      h('span', { className: `state ${run.state}` }, stateText(run.state)), h('span', { className: 'what' }, `${text('command_' + run.command)} · ${run.job}`),
       over && run.begun ? h('span', { className: 'note' }, clock(run.ended - run.begun)) : null,
       on || waits ? h('button', { type: 'button', className: 'small', onclick: () => post(`api/runs/${run.id}/cancel`).catch(e => this.said(e.message, true)) }, text('cancel')) : null,
       over && run.state !== 'cancelled' ? h('button', { type: 'button', className: 'small', onclick: () => this.showResults(run.job, run.command) }, text('show_results')) : null);
