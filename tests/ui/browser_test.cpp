@@ -48,8 +48,10 @@ std::string block_stl(const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
 TEST_F(PageSlow, LeadsFromADroppedProgramToTheCompensatedOneOfTheCommandLine) {
   EXPECT_EQ(checked("whole_way", tests::data_path("nc/fusion_parallel_ball_inch.nc")), "");
   const auto by_hand = tests::run_camber(folder_, "compensate served/ball/job.toml -o by_hand.nc --keep-anyway");
-  EXPECT_NE(file_text(folder_ / "by_hand.nc"), "") << by_hand.err;
-  EXPECT_EQ(file_text(folder_ / "served/downloaded.nc"), file_text(folder_ / "by_hand.nc"));
+  const std::string expected = file_text(folder_ / "by_hand.nc");
+  EXPECT_NE(expected, "") << by_hand.err;
+  // The programs would be hundreds of kilobytes in the log.
+  EXPECT_TRUE(file_text(folder_ / "served/downloaded.nc") == expected);
 }
 
 TEST_F(Page, LinksLinesWithMoves) {

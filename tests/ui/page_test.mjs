@@ -23,7 +23,7 @@ const painted = page => page.evaluate(async () => {
 const picture = async (page, name) => { if (pictures) { await painted(page); await page.screenshot({ path: join(pictures, name) }); } };
 const ready = page => page.waitForFunction(() => document.documentElement.dataset.ready === 'all');
 // Until everything that the page has been told is written, checked and shown: the page counts it before an event's handler ends.
-const settled = page => page.waitForFunction(() => document.documentElement.dataset.busy === '0', null, { timeout: 120000 });
+const settled = page => page.waitForFunction(() => document.documentElement.dataset.busy === '0', null, { timeout: 300000 });
 const tab = (page, name) => page.click(`nav [data-tab=${name}]`);
 // act makes the page load anew.
 async function reloaded(page, act) {
@@ -76,7 +76,7 @@ async function over(page, count = 1) {
   await page.waitForFunction(n => {
     const states = document.documentElement.dataset.runs?.split(' ') ?? [];
     return states.length >= n && !states.some(s => ['', 'queued', 'running'].includes(s));
-  }, count, { timeout: 240000 });
+  }, count, { timeout: 900000 });
   await settled(page);
 }
 
@@ -186,7 +186,7 @@ const CHECKS = {
     expect(Number((await page.locator('#guesses').innerText()).match(/\d+/)[0]) === guesses - 1, 'a confirmed value is still marked');
     await tab(page, 'text');
     const text = page.locator('#text');
-    await text.fill((await text.inputValue()).replace('[compensation]\n', '[compensation]\nmax_rounds = 1\n').replace('[simulation]\n', '[simulation]\ncoupling = "rigid"\n'));
+    await text.fill((await text.inputValue()).replace('[compensation]\n', '[compensation]\nmax_rounds = 1\nlevers = ["shift"]\n').replace('[simulation]\n', '[simulation]\ncoupling = "rigid"\n'));
     await page.getByRole('button', { name: 'Save', exact: true }).click();
     await settled(page);
     const job = readFileSync(join(folder, 'ball/job.toml'), 'utf8');
