@@ -18,6 +18,12 @@ export function select(label, options, value, changed) {
   return h('label', { className: 'choice' }, h('span', {}, label), list);
 }
 
+// What a click does, Enter on the focused element does too.
+export const clickable = act => ({ tabIndex: 0, role: 'button', onclick: act, onkeydown: e => { if (e.key === 'Enter') act(); } });
+
+// In groups of three, apart by a narrow space: a point stands before decimals in every language.
+export const grouped = n => String(n).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+
 export function clock(seconds) {
   const s = Math.round(seconds);
   if (s < 100) return `${s} s`;

@@ -4,14 +4,14 @@ import { h } from './dom.js';
 const HEIGHT = 20, MARGIN = 20, MAX_PIXELS = 15e6;  // browsers draw no taller elements
 
 export class LineList {
-  constructor({ picked }) {
+  constructor({ picked, label }) {
     this.picked = picked;
     this.rows = h('div', { className: 'rows' });
     this.space = h('div', { className: 'space' }, this.rows);
-    this.box = h('div', { className: 'lines', tabIndex: 0, role: 'listbox', 'aria-label': 'NC', onscroll: () => this.draw() }, this.space);
+    this.box = h('div', { className: 'lines', tabIndex: 0, role: 'listbox', 'aria-label': label, onscroll: () => this.draw() }, this.space);
     this.box.addEventListener('keydown', e => {
       const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 20, PageUp: -20 }[e.key];
-      if (!step || !this.selected) return;
+      if (!step || !this.count) return;
       e.preventDefault();
       this.select(Math.min(this.count, Math.max(1, this.selected + step)), true);
       this.picked(this.selected);
@@ -38,6 +38,20 @@ export class LineList {
   line(number) {
     const end = number < this.count ? this.starts[number] : this.text.length;
     return this.text.slice(this.starts[number - 1], end).replace(/[\r\n]+$/, '');
+  }
+
+  // The next line below the selected one, or the first of all, with this text; 0: none.
+  find(words) {
+    const low = this.text.toLowerCase(), what = words.toLowerCase(), from = this.selected < this.count ? this.starts[this.selected] : 0;
+    const at = [low.indexOf(what, from), low.indexOf(what)].find(i => i >= 0);
+    if (at === undefined) return 0;
+    let first = 0, end = this.count;
+    while (end - first > 1) {
+      const middle = (first + end) >> 1;
+      if (this.starts[middle] <= at) first = middle;
+      else end = middle;
+    }
+    return first + 1;
   }
 
   // Map of line to {severity, texts}; or to a class of its own.

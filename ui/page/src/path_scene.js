@@ -44,7 +44,7 @@ function pairs(path, keep, every) {
 }
 
 export class PathScene {
-  constructor(box, { picked }) {
+  constructor(box, { picked, label }) {
     Object.assign(this, { box, picked, path: null, hidden: new Set() });
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
@@ -59,7 +59,7 @@ export class PathScene {
     this.camera.up.set(0, 0, 1);
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
-    canvas.setAttribute('aria-label', 'Path');
+    canvas.setAttribute('aria-label', label);
     box.append(canvas);
     this.marker = box.appendChild(document.createElement('div'));
     this.marker.className = 'marker';
@@ -82,17 +82,28 @@ export class PathScene {
     this.render();
   }
 
+  // Nothing is left of the program that was shown.
+  clear() {
+    if (this.lines) { this.things.remove(this.lines, this.coarse); this.lines.geometry.dispose(); this.coarse.geometry.dispose(); }
+    this.lines = this.coarse = this.path = this.extents.path = null;
+    this.tip.hidden = true;
+    this.mark(null);
+    this.setBox(null);
+    this.setPart(null);
+    this.setBlank(null);
+  }
+
   // same: the path of the program that is shown; the eye stays where it is.
   setPath(path, same) {
     if (this.lines) { this.things.remove(this.lines, this.coarse); this.lines.geometry.dispose(); this.coarse.geometry.dispose(); }
     this.path = path;
     this.mark(null);
     const place = this.place = new Float32Array(3 * path.count);
-    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity], cuts = i => path.kind[i] !== 0 && path.kind[i] !== RAPID;
     for (let i = 0; i < path.count; i++)
       [path.x[i], path.y[i], path.z[i]].forEach((v, k) => {
         place[3 * i + k] = v + path.origin[k];
-        if (path.kind[i] === RAPID) return;
+        if (!cuts(i) && !cuts(i + 1)) return;  // neither end of a cut
         low[k] = Math.min(low[k], v + path.origin[k]);
         high[k] = Math.max(high[k], v + path.origin[k]);
       });

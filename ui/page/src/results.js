@@ -20,12 +20,12 @@ export class Results {
     const results = job.results;
     if (results.length === 0) return clear(this.box, h('p', { className: 'note' }, text('no_results')));
     this.command = results.some(r => r.command === command) ? command : results.some(r => r.command === this.command) ? this.command : results.at(-1).command;
-    if (!results.some(r => r.command === this.beside)) this.beside = '';
+    if (this.beside === this.command || !results.some(r => r.command === this.beside)) this.beside = '';
     const names = results.map(r => [r.command, `${text('command_' + r.command)} · ${stateText(r.run.state)}`]);
     const shown = results.find(r => r.command === this.command), other = results.find(r => r.command === this.beside);
     clear(this.box, h('div', { className: 'bar' },
       select(text('result'), names, this.command, c => this.show(this.job, c)),
-      select(text('beside'), [['', text('nothing')], ...names], this.beside, c => { this.beside = c; this.show(this.job); }),
+      names.length > 1 ? select(text('beside'), [['', text('nothing')], ...names.filter(([c]) => c !== this.command)], this.beside, c => { this.beside = c; this.show(this.job); }) : null,
       shown.run.program && shown.files.includes(shown.run.program) ? h('a', { className: 'download', href: fileAddress(shown.run.program, true), download: baseName(shown.run.program) }, text('download', baseName(shown.run.program))) : null),
     h('div', { className: other ? 'two' : '' }, [shown, other].filter(Boolean).map(r => this.one(r))));
   }
@@ -34,7 +34,7 @@ export class Results {
     const { run, files, figures } = result;
     return h('div', { className: 'result', data: { command: result.command } },
       run.messages?.length ? h('ul', { className: 'messages' }, run.messages.map(m => h('li', { className: m.severity }, `${m.line ? `${m.file}:${m.line}: ` : ''}${m.message}`))) : null,
-      files.includes(run.report) ? frame(run.report, result.command) : h('p', { className: 'note' }, text('no_report')),
+      files.includes(run.report) ? frame(run.report, text('command_' + result.command)) : h('p', { className: 'note' }, text('no_report')),
       figures ? h('details', {}, h('summary', {}, text('figures')), h('table', {}, Object.entries(figures).flatMap(([k, v]) => typeof v === 'object' && v ? Object.entries(v).map(([n, x]) => [`${k}.${n}`, x]) : [[k, v]])
         .map(([k, v]) => h('tr', {}, h('th', {}, k), h('td', {}, typeof v === 'object' ? JSON.stringify(v) : String(v)))))) : null,
       h('ul', { className: 'files' }, files.map(f => h('li', {}, h('a', { href: fileAddress(f, true) }, baseName(f))))));
@@ -44,23 +44,23 @@ export class Results {
 export class Comparison {
   constructor({ said }) {
     this.said = said;
-    this.before = new LineList({ picked: n => this.follow(n, true) });
-    this.after = new LineList({ picked: n => this.follow(n, false) });
+    this.before = new LineList({ label: text('before'), picked: n => this.follow(n, true) });
+    this.after = new LineList({ label: text('after'), picked: n => this.follow(n, false) });
     this.head = h('div', { className: 'bar' });
-    this.box = h('div', { className: 'comparison' }, this.head, h('div', { className: 'two' }, h('div', {}, h('h2', {}, text('before')), this.before.box), h('div', {}, h('h2', {}, text('after')), this.after.box)));
+    this.lists = h('div', { className: 'two' }, h('div', {}, h('h2', {}, text('before')), this.before.box), h('div', {}, h('h2', {}, text('after')), this.after.box));
+    this.box = h('div', { className: 'comparison' }, this.head, this.lists);
   }
 
   async show(job) {
     this.hunks = [];
     const programs = job.results.map(r => r.run.program).filter(p => p && job.results.some(r => r.files.includes(p)));
-    if (programs.length === 0 || job.programs.length !== 1) {
-      this.before.setText('');
-      this.after.setText('');
-      return clear(this.head, text('no_results'));
-    }
+    this.lists.hidden = programs.length === 0 || job.programs.length !== 1;
+    if (this.lists.hidden) return clear(this.head, h('p', { className: 'note' }, text(job.programs.length > 1 ? 'several_programs' : 'no_new_program')));
     if (!programs.includes(this.program)) this.program = programs[0];
+    const asked = this.asked = Symbol('comparison');
     try {
       const [hunks, before, after] = await Promise.all([get('api/difference', { before: job.programs[0], after: this.program }), fileText(job.programs[0]), fileText(this.program)]);
+      if (asked !== this.asked) return;
       this.before.setText(before);
       this.after.setText(after);
       this.setHunks(hunks);

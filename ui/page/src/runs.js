@@ -1,9 +1,9 @@
 // Commands on the job, and what runs and waits.
 import { get, optionsOf, post } from './api.js';
 import { clear, clock, h, select } from './dom.js';
-import { text } from './texts.js';
+import { stepText, text } from './texts.js';
 
-// Names of options as the command line has them; what they mean, camber COMMAND --help says.
+// Names of options as the command line has them.
 const OPTIONS = {
   predict: [['trace', 'file', /\.(csv|txt)$/i], ['meshes', 'flag']],
   compensate: [['time-budget', 'number', '%'], ['measured', 'file', /\.csv$/i], ['uncertainty', 'text', '%'], ['keep-anyway', 'flag'], ['header', 'flag']],
@@ -38,7 +38,8 @@ export class Runs {
         : kind === 'file' ? h('select', {}, h('option', { value: '' }, '–'), this.job.files.filter(f => unit.test(f)).map(f => h('option', { value: folder + f }, f)))
         : h('input', { type: 'text', size: 8, value: value || '' });
       input.dataset.option = name;
-      return { name, kind, input, row: h('label', { className: 'option' }, input, ' ', h('code', {}, '--' + name), kind === 'number' ? ' ' + unit : '') };
+      const says = `${text('option_' + name)}${kind === 'number' ? `, ${unit}` : ''}`;
+      return { name, kind, input, row: h('label', { className: `option ${kind}` }, h('span', {}, says, ' ', h('code', {}, '--' + name)), input) };
     });
     clear(this.form, select(text('command'), this.about.commands.map(c => [c, text('command_' + c)]), this.command, c => { this.command = c; this.showForm(); }),
       h('div', { className: 'options' }, this.inputs.map(i => i.row)),
@@ -64,11 +65,11 @@ export class Runs {
   row(run) {
     const on = run.state === 'running', waits = run.state === 'queued', over = !on && !waits;
     const out = h('div', { className: `run ${run.state}`, data: { run: run.id, state: run.state } },
-      h('span', { className: 'state' }, stateText(run.state)), h('span', { className: 'what' }, `${text('command_' + run.command)} · ${run.job}`),
-      on ? h('span', { className: 'progress' }, h('progress', { max: 1, value: run.share ?? undefined }), ' ', run.step || '', run.left_s !== null && run.left_s !== undefined ? ` · ${text('left', clock(run.left_s))}` : '') : null,
+      h('span', { className: `state ${run.state}` }, stateText(run.state)), h('span', { className: 'what' }, `${text('command_' + run.command)} · ${run.job}`),
       over && run.begun ? h('span', { className: 'note' }, clock(run.ended - run.begun)) : null,
       on || waits ? h('button', { type: 'button', className: 'small', onclick: () => post(`api/runs/${run.id}/cancel`).catch(e => this.said(e.message, true)) }, text('cancel')) : null,
       over && run.state !== 'cancelled' ? h('button', { type: 'button', className: 'small', onclick: () => this.showResults(run.job, run.command) }, text('show_results')) : null);
+    if (on) out.append(h('span', { className: 'progress' }, h('progress', { max: 1, value: run.share ?? undefined }), ' ', stepText(run.step || ''), run.left_s !== null && run.left_s !== undefined ? ` · ${text('left', clock(run.left_s))}` : ''));
     if (run.message_count > 0) out.append(this.messages(run));
     return out;
   }

@@ -1,9 +1,9 @@
 // The job as a form: its settings by table, with their sources; what is guessed is marked until it is confirmed. Every
 // change goes to the server, which writes it into job.toml where the job can be read then.
-import { fileAddress, fileText, get, optionsOf, post } from './api.js';
+import { Pause, fileAddress, fileText, get, optionsOf, post } from './api.js';
 import { baseName, clear, folderName, h, select } from './dom.js';
 import { text } from './texts.js';
-import { givenValue, shownValue, unitOf } from './units.js';
+import { givenValue, isInch, shownValue, unitOf } from './units.js';
 
 const WAIT_MS = 450;
 const TOOL_TYPES = ['ball', 'flat', 'bull', 'drill', 'tapered_ball', 'chamfer', 'general'];
@@ -21,16 +21,32 @@ export class Setup {
   }
 
   show(job) {
+    // Somebody may be typing.
+    const focused = document.activeElement, focus = job.job === this.job?.job && this.box.contains(focused) && focused.dataset.path;
     this.job = job;
     const fields = job.fields, guesses = fields.filter(f => f.guessed && !f.is_default).length;
     const tables = [...new Set(fields.map(f => f.table))].filter(t => !t.startsWith('tool.'));
-    const focus = document.activeElement?.dataset?.path;
     clear(this.box,
       h('p', { className: guesses ? 'banner guess' : 'banner good', id: 'guesses' }, guesses ? text('guesses', guesses) : text('no_guesses')),
       this.tools(), tables.map(t => this.table(t)), this.filesCard());
     this.box.append(h('datalist', { id: 'materials' }, this.about.materials.map(m => h('option', { value: m.name }, m.what))));
-    if (focus) this.box.querySelector(`[data-path="${CSS.escape(focus)}"]`)?.focus();
+    const again = focus && this.box.querySelector(`[data-path="${CSS.escape(focus)}"]`);
+    if (again) {
+      again.value = focused.value;
+      again.focus();
+      if (again.setSelectionRange) again.setSelectionRange(focused.selectionStart, focused.selectionEnd);
+    }
     this.placeDrawings();
+  }
+
+  // The setting that stands in this line of job.toml, or the last one above it.
+  goTo(line) {
+    const field = this.job.fields.filter(f => f.line <= line).sort((a, b) => a.line - b.line).at(-1);
+    const input = field && this.box.querySelector(`[data-path="${CSS.escape(`${field.table}|${field.key}`)}"]`);
+    const more = input?.closest('details');
+    if (more) more.open = true;
+    input?.focus();
+    input?.scrollIntoView({ block: 'center' });
   }
 
   field(table, key) { return this.job.fields.find(f => f.table === table && f.key === key); }
@@ -48,8 +64,8 @@ export class Setup {
   // While somebody types: once he pauses.
   typed(input, field) {
     const path = `${field.table}|${field.key}`;
-    clearTimeout(this.waiting.get(path));
-    this.waiting.set(path, setTimeout(async () => {
+    if (!this.waiting.has(path)) this.waiting.set(path, new Pause(WAIT_MS));
+    this.waiting.get(path).then(async () => {
       const value = givenValue(field.key, input.dataset.text === 'yes' ? quoted(input.value) : input.value.replace(/\n/g, ' ').trim());
       if (value === field.value && !field.is_default) return;
       const result = await this.edit(['set', field.table, field.key, value]);
@@ -58,7 +74,7 @@ export class Setup {
       input.classList.toggle('wrong', wrong !== '');
       const says = input.closest('.field')?.querySelector('.wrong-text');
       if (says) says.textContent = wrong;
-    }, WAIT_MS));
+    });
   }
 
   input(field) {
@@ -90,7 +106,8 @@ export class Setup {
   }
 
   row(field) {
-    return h('div', { className: `field${field.guessed ? ' guessed' : ''}${field.is_default ? ' default' : ''}` },
+    const long = /[[{]/.test(field.value) || (field.key === 'machine' && field.table === '');
+    return h('div', { className: `field${field.guessed ? ' guessed' : ''}${field.is_default ? ' default' : ''}${long ? ' long' : ''}` },
       field.note ? h('p', { className: 'note' }, field.note) : null,
       h('label', {}, h('span', { className: 'key' }, field.key), this.input(field), h('span', { className: 'unit' }, unitOf(field.key))),
       h('span', { className: 'marks' }, this.marks(field)), h('span', { className: 'source' }, field.comment), h('span', { className: 'wrong-text', role: 'alert' }));
@@ -116,7 +133,7 @@ export class Setup {
       h('div', { className: 'wide' }, h('table', { className: 'tools' },
         h('thead', {}, h('tr', {}, h('th', {}, ''), TOOL_KEYS.map(k => h('th', {}, k.replace(/_(mm|deg|N_per_um)$/, ''), ' ', h('small', {}, unitOf(k)))))),
         h('tbody', {}, names.map(n => h('tr', { data: { tool: n.slice(5) } }, h('th', {}, 'T' + n.slice(5)), TOOL_KEYS.map(k => cell(n, k))))))),
-      this.drawings, h('details', {}, h('summary', {}, text('tools_more')), others));
+      this.drawings, isInch() ? h('p', { className: 'note' }, text('drawings_mm')) : null, this.more = h('details', { open: Boolean(this.more?.open) }, h('summary', {}, text('tools_more')), others));
   }
 
   // The drawings of the set-up sheet, which the check has just written.
@@ -158,7 +175,7 @@ export class Setup {
     const choose = h('input', { type: 'file', hidden: true, onchange: () => this.upload(choose.files[0]) });
     const meshes = this.job.files.filter(f => /\.(stl|step|stp)$/i.test(f));
     const libraries = this.job.files.filter(f => /\.(json|tools|csv|hsmlib|fctl|vtdb|tbl)$/i.test(f));
-    return this.filesBox = h('section', { className: 'card' }, h('h2', {}, text('files')), h('ul', {}, this.job.files.map(f => h('li', {}, h('a', { href: fileAddress(folderName(this.job.job) + f, true) }, f)))),
+    return this.filesBox = h('section', { className: 'card', id: 'files-beside' }, h('h2', {}, text('files')), h('ul', {}, this.job.files.map(f => h('li', {}, h('a', { href: fileAddress(folderName(this.job.job) + f, true) }, f)))),
       h('p', {}, choose, h('button', { type: 'button', onclick: () => choose.click() }, text('upload_file')), ' ', h('span', { className: 'note' }, text('upload_help'))),
       meshes.length ? select(text('part'), [['', '–'], ...meshes.map(f => [f, f])], plain(this.field('part', 'mesh')?.value ?? ''), f => f ? this.edit(['set', 'part', 'mesh', quoted(f)]) : this.edit(['remove', 'part', 'mesh'])) : null,
       h('p', {}, this.library = select(text('tool_library'), [['', text('from_program')], ...libraries.map(f => [f, f])], '', () => {}), ' ',
@@ -175,6 +192,7 @@ export class Setup {
   }
 
   async propose() {
+    if (!confirm(text('propose_sure'))) return;
     const library = this.library.querySelector('select').value, options = { machine: plain(this.field('', 'machine')?.value ?? '') };
     if (!options.machine.startsWith('preset:') && options.machine) options.machine = folderName(this.job.job) + options.machine;
     if (library) options.tools = folderName(this.job.job) + library;

@@ -1,7 +1,7 @@
 // The workbench: jobs at the left, one of them at the right, in tabs.
 import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
-import { fileBytes, fileText, get, optionsOf, post, watchRuns } from './api.js';
-import { baseName, clear, clock, folderName, h, select } from './dom.js';
+import { Pause, fileBytes, fileText, get, optionsOf, post, watchRuns } from './api.js';
+import { baseName, clear, clickable, clock, folderName, grouped, h, select } from './dom.js';
 import { LineList } from './line_list.js';
 import { readPath } from './path_data.js';
 import { PathScene, TOOL_COLOURS, VIEW_NAMES } from './path_scene.js';
@@ -21,9 +21,11 @@ const chosen = {
 const TABS = ['path', 'setup', 'run', 'results', 'compare', 'text'];
 
 class Workbench {
+  moving = new Pause(400);
+
   async start() {
     // The token is in the cookie by now: it does not stay in the address.
-    if (location.search) history.replaceState(null, '', location.pathname);
+    if (location.search) history.replaceState(null, '', location.pathname + location.hash);
     setLanguage(chosen.get('language', navigator.language?.startsWith('de') ? 'de' : 'en'));
     setInch(chosen.get('unit', 'mm') === 'inch');
     this.theme(chosen.get('theme', 'auto'));
@@ -47,14 +49,14 @@ class Workbench {
 
   skeleton() {
     this.jobList = h('div', { id: 'jobs' });
-    this.status = h('p', { id: 'status', role: 'status' });
+    this.status = h('p', { id: 'status', role: 'status', title: text('close'), onclick: () => this.said('') });
     this.main = h('main', {});
     this.choose = h('input', { type: 'file', hidden: true, id: 'choose', onchange: () => this.begin(this.choose.files[0]) });
     const again = (name, value) => { chosen.set(name, value); location.reload(); };
     clear(document.body,
       h('aside', {}, h('h1', {}, 'Camber'), this.choose,
         h('button', { type: 'button', className: 'main drop', onclick: () => this.choose.click() }, h('span', {}, text('drop')), h('small', {}, text('open'))),
-        h('h2', {}, text('jobs')), this.jobList, this.all = h('div', {}),
+        h('h2', {}, text('jobs')), this.jobList, this.all = h('div', { hidden: true, title: text('run_all_help') }),
         h('div', { className: 'settings' },
           select(text('unit'), [['mm', 'mm'], ['inch', 'inch']], isInch() ? 'inch' : 'mm', v => again('unit', v)),
           select(text('language'), Object.entries(LANGUAGES), currentLanguage(), v => again('language', v)),
@@ -69,8 +71,9 @@ class Workbench {
     this.runs = new Runs(this.about, { said, showResults: (job, command) => this.showResults(job, command) });
     this.results = new Results({ said });
     this.comparison = new Comparison({ said });
-    this.lines = new LineList({ picked: n => this.scene?.markLine(n) });
-    this.sceneBox = h('div', { className: 'scene', id: 'scene' });
+    this.lines = new LineList({ label: text('program'), picked: n => this.scene?.markLine(n) });
+    this.sceneTools = h('div', { className: 'over' });
+    this.sceneBox = h('div', { className: 'scene', id: 'scene' }, this.sceneTools);
     this.sceneBar = h('div', { className: 'bar', id: 'scene-bar' });
     this.legend = h('div', { className: 'legend', id: 'legend' });
     this.messageList = h('ul', { className: 'messages', id: 'messages' });
@@ -80,39 +83,51 @@ class Workbench {
       setup: this.setup.box, run: this.runs.box, results: this.results.box, compare: this.comparison.box,
       text: h('div', {}, this.textArea, h('p', {}, h('button', { type: 'button', className: 'main', onclick: () => this.saveText() }, text('save')))),
     };
-    this.tabs = h('nav', { role: 'tablist' }, TABS.map(t => h('button', { type: 'button', role: 'tab', data: { tab: t }, onclick: () => this.tab(t) }, text('tab_' + t))));
+    this.tabs = h('nav', { role: 'tablist', onkeydown: e => this.nextTab(e) }, TABS.map(t => h('button', { type: 'button', role: 'tab', data: { tab: t }, onclick: () => this.tab(t) }, text('tab_' + t))));
     this.head = h('div', { className: 'head' });
-    clear(this.all, select(text('run_all'), [['', '–'], ...this.about.commands.filter(c => !['compress', 'fit-feed'].includes(c)).map(c => [c, text('command_' + c)])], '', c => c && this.runAll(c)));
-    this.all.title = text('run_all_help');
+    clear(this.all, select(text('run_all'), [['', text('run_all')], ...this.about.commands.filter(c => !['compress', 'fit-feed'].includes(c)).map(c => [c, text('command_' + c)])], '', c => c && this.runAll(c)));
   }
 
   frame() {
     if (this.main.contains(this.tabs)) return;
     clear(this.main, this.head, this.tabs, TABS.map(t => this.pages[t]), h('p', { className: 'note keys' }, text('keys')));
     try {
-      this.scene = new PathScene(this.sceneBox, { picked: i => this.lines.select(this.scene.path.line[i], true) });
+      this.scene = new PathScene(this.sceneBox, { label: text('path'), picked: i => this.lines.select(this.scene.path.line[i], true) });
       this.scene.describe = i => this.describe(i);
       window.camberScene = this.scene;
-    } catch { clear(this.sceneBox, h('p', { className: 'note' }, text('no_webgl'))); }
+    } catch { this.sceneBox.append(h('p', { className: 'note' }, text('no_webgl'))); }
     this.theme(chosen.get('theme', 'auto'));
     this.by = 'kind';
     clear(this.sceneBar,
       select(text('colour_by'), ['kind', 'tool', 'feed', 'message'].map(b => [b, text('by_' + b)]), 'kind', b => { this.by = b; this.colour(); }),
       this.toolChoice = h('span', {}),
       h('label', {}, this.rapids = h('input', { type: 'checkbox', checked: true, onchange: () => this.showKinds() }), ' ', text('rapids')),
-      h('span', { className: 'choice' }, VIEW_NAMES.map(v => h('button', { type: 'button', data: { view: v }, onclick: () => this.scene?.look(v) }, text('view_' + v)))),
-      this.moveControls(),
-      h('button', { type: 'button', onclick: () => this.savePicture() }, text('save_picture')));
-    this.tab('path');
+      this.solidControls());
+    clear(this.sceneTools, this.moveControls(),
+      h('span', { className: 'choice views' }, VIEW_NAMES.map(v => h('button', { type: 'button', className: 'small', data: { view: v }, onclick: () => this.scene?.look(v) }, text('view_' + v))),
+        h('button', { type: 'button', className: 'small', onclick: () => this.savePicture() }, text('save_picture'))));
+    this.tab(TABS.find(t => location.hash === '#' + t) ?? 'path');
   }
 
+  // Without a job, of a program that none could be made of, there is the program alone. The address keeps the tab.
   tab(name) {
     if (!this.pages) return;
-    this.current = name;
+    this.current = name = this.job ? name : 'path';
+    if (this.job) history.replaceState(null, '', `${location.pathname}#${name}`);
     for (const t of TABS) this.pages[t].hidden = t !== name;
-    this.tabs.querySelectorAll('button').forEach(b => b.setAttribute('aria-selected', String(b.dataset.tab === name)));
+    this.tabs.querySelectorAll('button').forEach(b => {
+      b.setAttribute('aria-selected', String(b.dataset.tab === name));
+      b.disabled = !this.job && b.dataset.tab !== 'path';
+    });
     if (name === 'compare' && this.job) this.comparison.show(this.job);
     if (name === 'path') { this.scene?.resize(); this.lines.draw(); }
+  }
+
+  nextTab(e) {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[e.key];
+    if (!step) return;
+    this.tab(TABS.at((TABS.indexOf(this.current) + step) % TABS.length));
+    this.tabs.querySelector('[aria-selected=true]').focus();
   }
 
   said(sentence, wrong) {
@@ -144,6 +159,7 @@ class Workbench {
   }
 
   drawJobs() {
+    this.all.hidden = this.jobs.length === 0;
     clear(this.jobList, this.jobs.map(job => {
       const { state, last } = this.stateOf(job), name = baseName(job.job) === 'job.toml' && folderName(job.job) ? folderName(job.job).slice(0, -1) : job.job;
       return h('button', { type: 'button', className: 'job', data: { job: job.job, state }, 'aria-current': String(job.job === this.job?.job), onclick: () => this.openJob(job.job) },
@@ -161,7 +177,7 @@ class Workbench {
       await this.readJobs();
       if (made.job) return await this.openJob(made.job);
       await this.openProgram(made.program);
-      this.said(made.messages.map(m => m.message).join('; '), true);
+      this.said(`${text('no_job')} ${made.messages.find(m => m.severity === 'error')?.message ?? ''}`, true);
     } catch (e) { this.said(e.message, true); }
   }
 
@@ -175,20 +191,39 @@ class Workbench {
 
   // A program that no job could be made of: its lines and its messages.
   async openProgram(program) {
-    this.job = null;
-    this.program = program;
+    this.opening = Symbol('program');
     this.frame();
+    this.job = null;
+    this.begun(program);
     this.head.textContent = program;
+    this.tab('path');
+    this.drawJobs();
     await this.showProgram(program, {});
   }
 
+  // Nothing of the program before is shown as if it were of this one.
+  begun(program) {
+    this.program = program;
+    this.meshes = {};
+    this.marks = new Map();
+    this.scene?.clear();
+    this.lines.setText('');
+    this.lines.setMarks(this.marks);
+    clear(this.messageList);
+    clear(this.legend);
+    clear(this.toolChoice);
+    this.offerSolids();
+  }
+
   async openJob(name) {
+    const opening = this.opening = Symbol('job');
     try {
       const job = await get('api/job', { job: name });
+      if (opening !== this.opening) return;
+      this.job = job;
       this.frame();
       chosen.set('job', name);
-      this.program = job.programs[0];
-      this.job = job;
+      this.begun(job.programs[0]);
       clear(this.head, h('b', {}, job.job), ' ', h('span', { className: 'note' }, job.programs.join(', ')));
       this.setup.figures = null;
       this.showJob(job);
@@ -219,9 +254,9 @@ class Workbench {
     const [lines, checked] = await Promise.all([fileText(program), get('api/check', { program, ...options })]);
     if (program !== this.program) return;
     this.lines.setText(lines);
-    if (this.marks) this.lines.setMarks(this.marks);
+    this.lines.setMarks(this.marks);
     if (!this.job) this.showMessages(checked);
-    if (checked.path && this.scene) await this.showPath(checked.path);
+    if (checked.path && this.scene && !this.scene.path) await this.showPath(checked.path, program);
     document.documentElement.dataset.shown = program;
   }
 
@@ -236,13 +271,14 @@ class Workbench {
   }
 
   async check(what) {
-    const asked = this.asked = Symbol('check'), { job } = this, move = this.numbers('part', 'move_mm') ?? [0, 0, 0];
+    const asked = this.asked = Symbol('check'), { job, program } = this, move = this.numbers('part', 'move_mm') ?? [0, 0, 0];
     this.said(text('checking'));
     let checked;
     try { checked = await get('api/check', what); } catch (e) { return this.said(e.message, true); }
-    if (asked !== this.asked || checked.stopped) return;
-    if (this.scene && job && this.job?.job === job.job) {
-      if (checked.path_in_part) await this.showPath(checked.path, this.scene.path?.inPart);
+    if (asked !== this.asked || checked.stopped || this.job?.job !== job.job) return;
+    if (this.scene) {
+      // The job knows what the program alone does not say: kinematics, tool radii.
+      if (checked.path && (checked.path_in_part || !this.scene.path)) await this.showPath(checked.path, program, this.scene.path?.inPart);
       await this.showMeshes(checked, job, move);
     }
     this.showMessages(checked);
@@ -251,7 +287,7 @@ class Workbench {
 
   // At their lines and in the list.
   showMessages(checked) {
-    this.messages = checked.messages;
+    const messages = [...checked.messages].sort((a, b) => (b.severity === 'error') - (a.severity === 'error'));
     const assumed = checked.figures?.assumed ?? [];
     this.said(checked.status === 0 ? text('checked') : `${text('check_failed')}: ${checked.messages.find(m => m.severity === 'error')?.message ?? ''}`, checked.status !== 0);
     this.marks = new Map();
@@ -264,14 +300,21 @@ class Workbench {
     }
     this.lines.setMarks(this.marks);
     clear(this.messageList, checked.messages.length + assumed.length === 0 ? h('li', {}, text('no_messages')) : null,
-      checked.messages.map(m => h('li', { className: m.severity, onclick: () => m.file === this.program && this.goTo(m.line) }, m.line ? h('b', {}, `${baseName(m.file)}:${m.line} `) : null, m.message)),
-      assumed.map(a => h('li', { className: 'note link', onclick: () => this.tab('setup') }, `${text('guess')}: ${a}`)));
+      messages.map(m => h('li', { className: m.severity, ...this.leadsTo(m) }, m.line ? h('b', {}, `${baseName(m.file)}:${m.line} `) : null, m.message)),
+      assumed.map(a => h('li', { className: 'note', ...clickable(() => this.tab('setup')) }, `${text('guess')}: ${a}`)));
     if (this.by === 'message') this.colour();
-    document.documentElement.dataset.checked = String(Number(document.documentElement.dataset.checked ?? 0) + 1);
   }
 
-  async showPath(name, same) {
+  // To its line of the program, or to its setting.
+  leadsTo(message) {
+    if (!message.line) return {};
+    if (message.file === this.program) return clickable(() => this.goTo(message.line));
+    return message.file === this.job?.job ? clickable(() => { this.tab('setup'); this.setup.goTo(message.line); }) : {};
+  }
+
+  async showPath(name, program, same) {
     const path = readPath(await fileBytes(name));
+    if (program !== this.program || (this.scene.path?.inPart && !path.inPart)) return;
     this.scene.setPath(path, same);
     const tools = [...new Set(path.tool)].sort((a, b) => a - b);
     this.toolNumber = '';
@@ -296,12 +339,12 @@ class Workbench {
     const key = (name, colour) => h('span', { className: 'key' }, h('i', { style: `background: ${colour}` }), name);
     const rgb = c => `rgb(${c.join(',')})`;
     const legends = {
-      kind: () => [key(text('by_kind').split(' ')[0], 'rgb(217,98,43)'), key(text('by_kind').split(' ').at(-1), 'rgb(40,118,190)')],
+      kind: () => [key(text('kind_rapid'), 'rgb(217,98,43)'), key(text('kind_cutting'), 'rgb(40,118,190)')],
       tool: () => [...new Set(path.tool)].sort((a, b) => a - b).map(t => key('T' + t, rgb(TOOL_COLOURS[t % TOOL_COLOURS.length]))),
       feed: () => [h('span', {}, speed(0)), h('i', { className: 'ramp' }), h('span', {}, speed(most))],
       message: () => [key(text('messages'), 'rgb(200,45,40)')],
     };
-    clear(this.legend, legends[this.by](), h('span', { className: 'note' }, `${path.count.toLocaleString(currentLanguage())} ${text('points')}. `, path.thinned ? text('thinned', length(path.chord_mm)) : '', path.inPart ? ' ' + text('path_in_part') : ''));
+    clear(this.legend, legends[this.by](), h('span', { className: 'note' }, `${grouped(path.count)} ${text('points')}. `, path.thinned ? text('thinned', length(path.chord_mm)) : '', path.inPart ? ' ' + text('path_in_part') : ''));
   }
 
   describe(i) {
@@ -321,7 +364,14 @@ class Workbench {
     const corners = this.numbers('stock', 'box_mm');
     this.scene.setBox(Array.isArray(corners) && corners.length === 2 ? corners : null);
     this.placePart(this.numbers('part', 'move_mm') ?? [0, 0, 0]);
+    this.offerSolids();
     this.showSolids();
+  }
+
+  // Of what there is.
+  offerSolids() {
+    this.moveBox.hidden = this.partBox.hidden = !this.scene?.part;
+    this.blankBox.hidden = !this.scene?.blank && !this.scene?.boxLines;
   }
 
   showSolids() { this.scene?.showSolids({ part: this.partShown.checked, blank: this.blankShown.checked }); }
@@ -341,9 +391,7 @@ class Workbench {
         else this.scene.setBlank(geometry);
       } catch (e) { this.said(e.message, true); }
     }
-    this.moveBox.hidden = !this.scene.part;
     this.showSettings();
-    document.documentElement.dataset.solids = ['part', 'blank'].filter(n => this.scene[n]).join(' ');
   }
 
   // Where the part stands, in fields and in the picture.
@@ -356,8 +404,7 @@ class Workbench {
   // Into the job, once it stands still.
   partMoved(place, done) {
     this.placePart(place);
-    clearTimeout(this.moving);
-    if (done) this.moving = setTimeout(() => this.setup.edit(['set', 'part', 'move_mm', `[${place.map(v => +v.toFixed(6)).join(', ')}]`]), 400);
+    if (done) this.moving.then(() => this.setup.edit(['set', 'part', 'move_mm', `[${place.map(v => +v.toFixed(6)).join(', ')}]`]));
   }
 
   moveControls() {
@@ -371,8 +418,12 @@ class Workbench {
     this.mover = h('input', { type: 'checkbox', id: 'mover', onchange: () => this.scene.setMoving(this.mover.checked ? (place, done) => this.partMoved(place, done) : null) });
     this.moveBox = h('span', { className: 'choice move', hidden: true, title: text('move_part_help') },
       h('label', {}, this.mover, ' ', text('move_part')), this.placeInputs.map((input, k) => h('label', {}, 'XYZ'[k], ' ', input)), unitOf('move_mm'));
-    const box = checked => h('input', { type: 'checkbox', checked, onchange: () => this.showSolids() });
-    return [h('label', {}, this.partShown = box(true), ' ', text('part')), h('label', {}, this.blankShown = box(true), ' ', text('stock_box')), this.moveBox];
+    return this.moveBox;
+  }
+
+  solidControls() {
+    const box = () => h('input', { type: 'checkbox', checked: true, onchange: () => this.showSolids() });
+    return [this.partBox = h('label', { hidden: true }, this.partShown = box(), ' ', text('part')), this.blankBox = h('label', { hidden: true }, this.blankShown = box(), ' ', text('stock_box'))];
   }
 
   goTo(line) {
@@ -395,8 +446,11 @@ class Workbench {
     }
   }
 
+  // Of a run that may have ended just now.
   async showResults(job, command) {
     if (this.job?.job !== job) await this.openJob(job);
+    else this.job = await get('api/job', { job });
+    if (this.job?.job !== job) return;
     this.results.show(this.job, command);
     this.tab('results');
   }
@@ -422,8 +476,12 @@ class Workbench {
     if (e.key === 't') this.scene?.look('top');
     if (e.key === '/') {
       e.preventDefault();
-      const line = Number(prompt(text('go_to_line')));
-      if (line >= 1 && line <= this.lines.count) { this.tab('path'); this.goTo(line); }
+      const asked = prompt(text('go_to_line'))?.trim();
+      if (!asked) return;
+      const line = /^\d+$/.test(asked) ? Number(asked) : this.lines.find(asked);
+      if (line < 1 || line > this.lines.count) return this.said(text('not_found', asked), true);
+      this.tab('path');
+      this.goTo(line);
     }
     if (e.key === 'n' || e.key === 'p') {
       const lines = [...this.marks?.keys() ?? []].sort((a, b) => a - b), now = this.lines.selected;
