@@ -217,6 +217,9 @@ std::string Klartext::label_name(Cursor& at) {
   const std::size_t offset = at.offset();
   if (at.peek() == 'Q') {
     if (const auto name = read_parameter(at)) {
+      if (name->kind == 'S' && !parameters_.is_defined(*name))
+        throw FormulaError(offset, "undefined-parameter",
+                           name->text() + " has no text here; a name was expected before");
       if (name->kind == 'S') return parameters_.text(name->number);
       return fmt::format("{}", std::lround(known(parameters_.value(*name, offset), offset)));
     }
@@ -238,7 +241,7 @@ void Klartext::call_label(const Statement& s) {
   Cursor at = cursor(s);
   const std::string label = label_name(at);
   const std::size_t index = static_cast<std::size_t>(&s - tree().statements.data());
-  if (at.accept_prefix("REP")) {
+  if (at.accept_prefix("REP") && at.more()) {  // REP without a number: a subprogram, as older controls write it
     const std::size_t offset = at.offset();
     const double count = known(read_value(at, parameters_), offset);
     if (count < 0 || count > 65534)

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "nc/canned_cycles.h"
 #include "nc/corner_cut.h"
 #include "nc/cutter_radius.h"
 #include "nc/frames.h"
@@ -233,9 +234,10 @@ class Klartext {
   void drill_old();
   void mill_bore();
   void mill_old_pocket();
-  void mill_pocket();
-  struct Pocket;
-  void mill_pocket_level(const Pocket& pocket, double height_mm, double from_mm, double to_mm);
+  void mill_pocket_cycle();
+  PocketMoves pocket_moves();
+  double pocket_cutter_mm() const;
+  [[noreturn]] void too_many_cuts() const;
   void run_pattern(int number);
   void define_pattern(const Statement& s);
   struct Hole {

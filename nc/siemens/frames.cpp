@@ -65,6 +65,7 @@ void BlockRunner::run_frame_command() {
     return;
   }
   const bool any = words_.has_any("XYZ") || words_.has(Extra::rpl);
+  if (!additive) fine_shift_mm_ = Vec3::Zero();
   if (!any && !additive) {
     programmable_ = {};
     return update_frame();
@@ -102,6 +103,19 @@ void BlockRunner::run_frame_command() {
     own.linear = rpl.given ? rotation_in(plane_, rad_from_deg(rpl.value)) : rpy(angles);
   }
   programmable_ = additive ? programmable_.then_inside(own) : own;
+  update_frame();
+}
+
+/// G58: the shift of TRANS, G59: a fine one beside it; of the axes in the block alone.
+void BlockRunner::set_programmable_shift() {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Slot& slot = words_.of(kAxisLetters[axis]);
+    if (!slot.given) continue;
+    double &fine = fine_shift_mm_[axis], &shift = programmable_.shift_mm[axis];
+    const double coarse = request_.shift == 58 ? slot.value * unit_mm() : shift - fine;
+    if (request_.shift == 59) fine = slot.value * unit_mm();
+    shift = coarse + fine;
+  }
   update_frame();
 }
 

@@ -175,6 +175,8 @@ bool BlockRunner::execute(bool& ends_subprogram) {
   if (request_.block_feed) feed_ = internal_feed(*request_.block_feed);
   if (request_.frame) {
     run_frame_command();
+  } else if (request_.shift != 0) {
+    set_programmable_shift();
   } else if (request_.limits) {
   } else if (request_.dwell) {
     dwell();
@@ -203,7 +205,7 @@ int modal_group(int g) {
   if ((g >= 0 && g <= 3) || g == 331 || g == 332) return 1;
   if (g >= 17 && g <= 19) return 6;
   if (g >= 40 && g <= 42) return 7;
-  if ((g >= 54 && g <= 57) || g == 500 || (g >= 505 && g <= 599)) return 8;
+  if ((g >= 54 && g <= 59) || g == 500 || (g >= 505 && g <= 599)) return 8;
   if (g == 70 || g == 71 || g == 700 || g == 710) return 13;
   return g == 90 || g == 91 ? 14 : 0;
 }
@@ -275,7 +277,6 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     std::string_view what, instead;
   };
   constexpr std::array kRefused{Refused{33, 35, "thread cutting", "a tapping cycle"},
-                                Refused{58, 59, "programmable shift", "TRANS or ATRANS"},
                                 Refused{96, 96, "constant cutting speed", "G97 with S"},
                                 Refused{147, 148, "smooth approach and retraction", "G1 to G3"},
                                 Refused{247, 248, "smooth approach and retraction", "G1 to G3"},
@@ -352,6 +353,14 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     case 111:
     case 112:
       request_.pole = g;
+      return;
+    case 58:
+    case 59:
+      // With coordinates a programmable shift, else the work offset that an 828D has under this number.
+      if (!words_.has_any("XYZ") ||
+          std::ranges::any_of(words_.g, [](const CodeWord& c) { return c.number >= 0 && c.number <= 3; }))
+        return set_work_offset(g);
+      request_.shift = g;
       return;
     case 500:
       return set_work_offset(500);

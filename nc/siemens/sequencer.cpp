@@ -567,11 +567,8 @@ void Sequencer::run_command_word(const Item& item) {
         report_.error(item.offset, "axis", fmt::format("{}[{}]: X, Y, Z, A, B or C was expected", row.name, axis));
         return;
       }
-      report_.error(
-          item.offset, "not-supported",
-          fmt::format("{}[{}] (an axis beside the path) is not supported; G0 {} was expected", row.name, axis, axis),
-          row.name);
-      return;
+      return runner_.position_axis(axis[0],
+                                   {true, !item.constant, item.dimension, word_value(item, row.name), item.offset});
     }
     case Does::blend_distance_rapid:
       return;

@@ -67,6 +67,8 @@ enum class Does : std::uint8_t {
   drilling,        // CYCLE81 ...
   pattern,         // HOLES1 ...
   thread_milling,  // CYCLE90
+  pocket,          // POCKET3, POCKET4
+  face,            // CYCLE61, CYCLE71
   modal_call,      // MCALL
   alarm,           // SETAL
   end_subprogram,  // RET
