@@ -132,26 +132,16 @@ void Klartext::define_cycle(const Statement& s) {
 void Klartext::define_old_cycle(int number, int part, Cursor at, const Statement& s) {
   const bool in_parts = number == 7 || number == 8 || number == 10 || number == 11 || number == 26;
   if (in_parts && part <= 0) return;
-  switch (number) {
-    case 7:
-      return shift_datum(at, s.begin);
-    case 8:
-      return set_mirror(at);
-    case 10:
-      return set_rotation(at);
-    case 11:
-      return set_scale(at);
-    case 26:
-      return set_axis_scale(at);
-    case 19:
-      return set_working_plane(at, part);
-    case 32:
-      return set_tolerance(part, at);
-    case 13:
-      if (part > 0) add_event(EventKind::spindle_orient, 19);
-      return;
-    default:
-      break;
+  if (number == 7) return shift_datum(at, s.begin);
+  if (number == 8) return set_mirror(at);
+  if (number == 10) return set_rotation(at);
+  if (number == 11) return set_scale(at);
+  if (number == 26) return set_axis_scale(at);
+  if (number == 19) return set_working_plane(at, part);
+  if (number == 32) return set_tolerance(part, at);
+  if (number == 13) {
+    if (part > 0) add_event(EventKind::spindle_orient, 19);
+    return;
   }
   if (number == 12) {
     if (part == 0) {
@@ -629,16 +619,16 @@ void Klartext::bore_back() {
   cycle_move(MoveKind::rapid, back, 0);
 }
 
+/// The value of CYCL DEF 1.2 and the like.
+double Klartext::old_value(int part) const {
+  if (const auto found = cycle_.values.find(part); found != cycle_.values.end()) return found->second;
+  throw FormulaError(cycle_.offset, "cycle", fmt::format("cycle {0} without its part {0}.{1}", cycle_.number, part));
+}
+
 /// Cycles 1, 2 and 17: the tool stands at the clearance above the surface.
 void Klartext::drill_old() {
   const double unit = unit_mm();
-  const auto value = [&](int part) {
-    const auto found = cycle_.values.find(part);
-    if (found == cycle_.values.end())
-      throw FormulaError(cycle_.offset, "cycle",
-                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
-    return found->second;
-  };
+  const auto value = [&](int part) { return old_value(part); };
   Hole h;
   h.clearance_mm = std::abs(value(1)) * unit;
   h.surface_mm = programmed()[tool_axis_] - h.clearance_mm;
@@ -774,13 +764,7 @@ void Klartext::mill_old_pocket() {
   const double unit = unit_mm();
   const bool round = cycle_.number == 5;
   const double tool = pocket_cutter_mm();
-  const auto value = [&](int part) {
-    const auto found = cycle_.values.find(part);
-    if (found == cycle_.values.end())
-      throw FormulaError(cycle_.offset, "cycle",
-                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
-    return found->second * unit;
-  };
+  const auto value = [&](int part) { return old_value(part) * unit; };
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   const double clearance = std::abs(value(1)), depth = std::abs(value(2)), step = std::abs(value(3));
   const double plunge = cycle_.feeds.contains(3) ? cycle_.feeds[3] : feed_.value_or(0);

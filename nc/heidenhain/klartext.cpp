@@ -101,57 +101,36 @@ bool Klartext::step() {
 
 void Klartext::execute(const Statement& s) {
   if (has_words(s.kind)) return run_path(s);
+  using Run = void (Klartext::*)(const Statement&);
+  static constexpr std::pair<Kind, Run> kRun[] = {{Kind::tool_call, &Klartext::call_tool},
+                                                  {Kind::tool_def, &Klartext::define_tool},
+                                                  {Kind::blank_form, &Klartext::read_blank_form},
+                                                  {Kind::call_label, &Klartext::call_label},
+                                                  {Kind::assignment, &Klartext::assign},
+                                                  {Kind::function, &Klartext::run_function},
+                                                  {Kind::cycle_def, &Klartext::define_cycle},
+                                                  {Kind::cycle_call, &Klartext::run_cycle_call},
+                                                  {Kind::plane, &Klartext::run_plane},
+                                                  {Kind::tcpm, &Klartext::run_tcpm},
+                                                  {Kind::transform, &Klartext::run_transform},
+                                                  {Kind::pattern, &Klartext::define_pattern},
+                                                  {Kind::dwell, &Klartext::run_dwell},
+                                                  {Kind::refused, &Klartext::refuse}};
+  for (const auto& [kind, run] : kRun)
+    if (s.kind == kind) return (this->*run)(s);
   switch (s.kind) {
     case Kind::end_program:
       note_rest(s);
       end_program();
-      break;
-    case Kind::tool_call:
-      call_tool(s);
-      break;
-    case Kind::tool_def:
-      define_tool(s);
-      break;
-    case Kind::blank_form:
-      read_blank_form(s);
       break;
     case Kind::label: {
       const auto number = cursor(s).integer();
       if (number && *number == 0 && !level().is_program) levels_.pop_back();
       break;
     }
-    case Kind::call_label:
-      call_label(s);
-      break;
     case Kind::call_program:
-      call_program(s, false);
-      break;
     case Kind::select_program:
-      call_program(s, true);
-      break;
-    case Kind::assignment:
-      assign(s);
-      break;
-    case Kind::function:
-      run_function(s);
-      break;
-    case Kind::cycle_def:
-      define_cycle(s);
-      break;
-    case Kind::cycle_call:
-      run_cycle_call(s);
-      break;
-    case Kind::plane:
-      run_plane(s);
-      break;
-    case Kind::tcpm:
-      run_tcpm(s);
-      break;
-    case Kind::transform:
-      run_transform(s);
-      break;
-    case Kind::pattern:
-      define_pattern(s);
+      call_program(s, s.kind == Kind::select_program);
       break;
     case Kind::stop: {
       add_event(EventKind::m_code, 0);
@@ -160,9 +139,6 @@ void Klartext::execute(const Statement& s) {
         if (const auto code = at.integer()) run_m({*code, std::nullopt, s.begin});
       break;
     }
-    case Kind::dwell:
-      run_dwell(s);
-      break;
     case Kind::noted: {
       Cursor at(file().source.text(), s.begin, s.end);
       std::string name = at.letters();
@@ -173,9 +149,6 @@ void Klartext::execute(const Statement& s) {
       warn(s.begin, "no-effect", fmt::format("{} is read without effect", name), name);
       break;
     }
-    case Kind::refused:
-      refuse(s);
-      break;
     default:
       break;
   }
@@ -453,18 +426,15 @@ void Klartext::run_function(const Statement& s) {
   const auto other = [&](const char* what) { error(s.begin, "not-supported", what, what); };
   switch (*number) {
     case 14:
+      at.accept("ERROR");
+      at.accept('=');
+      error(s.begin, "program-error",
+            fmt::format("the program ends here with error {} (FN 14); conditions that do not lead here were expected",
+                        read_value(at, parameters_)));
+      ended_ = true;
+      return;
     case 15:
     case 16:
-      if (*number == 14) {
-        at.accept("ERROR");
-        at.accept('=');
-        const double code = read_value(at, parameters_);
-        error(s.begin, "program-error",
-              fmt::format("the program ends here with error {} (FN 14); conditions that do not lead here were expected",
-                          code));
-        ended_ = true;
-        return;
-      }
       return;  // printing
     case 17:
     case 19:

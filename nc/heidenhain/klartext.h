@@ -231,6 +231,7 @@ class Klartext {
   void call_cycle(std::size_t offset);
   void run_cycle_call(const Statement& s);
   void drill(int number);
+  double old_value(int part) const;
   void drill_old();
   void mill_bore();
   void mill_old_pocket();
