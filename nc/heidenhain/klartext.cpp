@@ -417,6 +417,22 @@ void Klartext::jump_behind_goto(Cursor& at, const Statement& s) {
   jump(label_name(at), s.begin);
 }
 
+/// = ID50 NR2 IDX5: number, length and radius of a tool, where they are given.
+std::optional<double> Klartext::asked_of_control(Cursor at) {
+  const auto number = [&](std::string_view word) { return at.accept_prefix(word) ? read_value(at, parameters_) : -1; };
+  at.accept('=');
+  const double group = number("ID"), which = number("NR"), index = number("IDX");
+  const int tool = index < 0 ? state_.tool : static_cast<int>(index);
+  if (group == 20 && which == 1) return state_.tool;
+  if (group != 50 || (which != 1 && which != 2)) return std::nullopt;
+  const auto found = tools_.find(tool);
+  std::optional<double> value = found == tools_.end() ? std::nullopt
+                                : which == 1          ? found->second.length_mm
+                                                      : found->second.radius_mm;
+  if (!value && which == 2) value = nc::cutter_radius_mm(options_.tool_offsets, tool);
+  return value ? std::optional(*value / unit_mm()) : std::nullopt;
+}
+
 /// FN 0 to FN 38.
 void Klartext::run_function(const Statement& s) {
   Cursor at = cursor(s);
@@ -448,6 +464,7 @@ void Klartext::run_function(const Statement& s) {
       at.accept("SYSREAD");
       const auto name = read_parameter(at);
       if (!name) throw FormulaError(s.begin, "function", "FN 18 without a parameter; FN 18: SYSREAD Q1 = was expected");
+      if (const auto value = asked_of_control(at)) return parameters_.set(*name, *value);
       parameters_.set_unknown(*name, fmt::format("{} is read from the control (FN 18) in line {}", name->text(),
                                                  file().source.location(s.begin).line));
       return;

@@ -128,6 +128,7 @@ class Klartext {
   void assign(const Statement& s);
   bool set_or_say(const ParameterName& name, const Statement& s, const std::function<double()>& value);
   void run_function(const Statement& s);
+  std::optional<double> asked_of_control(Cursor at);
   std::optional<bool> definition_asked(Cursor& at) const;
   void jump_behind_goto(Cursor& at, const Statement& s);
   std::string label_name(Cursor& at);
