@@ -960,10 +960,21 @@ void Klartext::define_pattern(const Statement& s) {
     while (at.more() && at.peek() != ')') {
       const std::size_t here = at.offset();
       const std::string word = at.letters();
-      if (word.empty())
+      const bool step = word == "IX" || word == "IY";  // from the place before
+      constexpr std::array<std::string_view, 14> kWords{"X",    "Y",  "Z",  "D",    "NUM",  "ROT",   "ROTX",
+                                                        "ROTY", "DX", "DY", "NUMX", "NUMY", "START", "STEP"};
+      if (!step && std::ranges::find(kWords, word) == kWords.end())
         throw FormulaError(here, "cycle", fmt::format("{} in PATTERN DEF; X, Y or Z was expected", at.word()));
       at.advance(word.size());
-      values[word] = known(read_value(at, parameters_), here);
+      const double value = known(read_value(at, parameters_), here);
+      if (step && pattern_.empty())
+        throw FormulaError(here, "cycle",
+                           fmt::format("{} in the first place of PATTERN DEF; X and Y were expected", word));
+      const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+      if (step)
+        values[word.substr(1)] = value + pattern_.back()[word == "IX" ? axes.first : axes.second] / unit_mm();
+      else
+        values[word] = value;
     }
     if (!at.accept(')')) throw FormulaError(begin, "cycle", "the bracket ( of PATTERN DEF is not closed");
     const auto value = [&](const char* name) {

@@ -377,7 +377,7 @@ void Klartext::assign(const Statement& s) {
     const std::size_t begin = at.offset();
     const auto name = read_parameter(at);
     if (!name || !at.accept('='))
-      throw FormulaError(begin, "expression", fmt::format("{}: Q5 = and a formula was expected", at.word()));
+      return error(begin, "expression", fmt::format("{}: Q5 = and a formula was expected", at.word()));
     if (name->kind == 'S')
       parameters_.set_text(name->number, read_text_formula(at, parameters_));
     else if (!set_or_say(*name, s, [&] { return read_formula(at, parameters_); }))

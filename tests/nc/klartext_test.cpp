@@ -780,6 +780,24 @@ TEST(Klartext, FormsOfOlderControlsAndPosts) {
             Messages{"p.h:4:10: error: QS5 has no text here; a name was expected before [undefined-parameter]"});
 }
 
+TEST(Klartext, PlacesOfAPatternMayBeStepsFromTheOneBefore) {
+  const auto places = [](const std::string& pattern) {
+    const Read r = read_lines(with_start("PATTERN DEF " + pattern +
+                                         "\nCYCL DEF 200 ~\nQ200=2 ~\nQ201=-5 ~\nQ206=150 ~\nQ202=5\n"
+                                         "CYCL CALL PAT\n"));
+    if (!r.messages.empty()) return r.messages.front();
+    std::string out;
+    for (const Move& m : r.moves.moves)
+      if (m.end_mm.z() == -5) out += fmt::format("{:g} {:g};", m.end_mm.x(), m.end_mm.y());
+    return out;
+  };
+  EXPECT_EQ(places("POS1( X+25 Y+33.5 Z+0 ) ~\nPOS2( X+15 IY+6.5 Z+0 ) ~\nPOS3( IX-5 IY-10 Z+0 )"),
+            "25 33.5;15 40;10 30;");
+  EXPECT_EQ(places("POS1( IX+25 Y+1 Z+0 )"),
+            "p.h:4:19: error: IX in the first place of PATTERN DEF; X and Y were expected [cycle]");
+  EXPECT_EQ(places("POS1( X+25 W+1 )"), "p.h:4:24: error: W+1 in PATTERN DEF; X, Y or Z was expected [cycle]");
+}
+
 TEST(Klartext, TheControlKnowsTheToolThatIsGiven) {
   const std::string lines =
       "TOOL DEF 7 L+20 R+4\nFN 0: Q11 = +7\nTOOL CALL Q11 Z S1000\n"
