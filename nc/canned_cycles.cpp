@@ -94,4 +94,95 @@ class HoleWriter {
 
 std::vector<CycleStep> hole_steps(const CycleHole& hole, const PlaneAxes& axes) { return HoleWriter(hole, axes).run(); }
 
+// --- pockets
+
+bool mill_pocket_level(const PocketCycle& pocket, const PlaneAxes& axes, double height_mm, double from_mm, double to_mm,
+                       const PocketMoves& moves) {
+  const double c = std::cos(pocket.angle_rad), s = std::sin(pocket.angle_rad);
+  const auto at = [&](double x, double y) {
+    Vec3 p = pocket.middle_mm;
+    p[axes.first] += c * x - s * y;
+    p[axes.second] += s * x + c * y;
+    p[axes.normal] = height_mm;
+    return p;
+  };
+  const auto line = [&](const Vec3& end) { moves.line(end, pocket.feed_mm_per_s); };
+  const double way = from_mm - to_mm;
+  if (const double x = pocket.half_mm[0] - from_mm, y = pocket.half_mm[1] - from_mm; !pocket.round && way > 0) {
+    // The long way of the middle first, which no ring reaches.
+    line(at(-x, -y));
+    line(at(x, y));
+    if (y > 0) line(at(0, 0));
+  }
+  const double count = std::max(1.0, std::ceil(way / pocket.sideways_mm - 1e-9));
+  if (!(count <= kMaxPecks)) return false;
+  const int rings = static_cast<int>(count);
+  for (int i = 1; i <= rings; ++i) {
+    const double inside = from_mm - way * i / rings;
+    const double x = pocket.half_mm[0] - inside, y = pocket.half_mm[1] - inside, f = pocket.sense;
+    if (pocket.round && x < 1e-6) continue;
+    line(at(x, 0));
+    if (pocket.round) {
+      moves.circle(pocket.middle_mm, f * 2 * kPi, pocket.feed_mm_per_s);
+      continue;
+    }
+    const double corner = std::max(0.0, std::min({pocket.corner_mm - inside, x, y}));
+    // Half a side, then corner and side four times, the last one again half.
+    const double corners[4][2] = {{1, f}, {-1, f}, {-1, -f}, {1, -f}};
+    for (int k = 0; k < 4; ++k) {
+      const double px = corners[k][0], py = corners[k][1];
+      const bool along_y = k % 2 == 0;  // comes in along the second side, leaves along the first
+      line(along_y ? at(px * x, py * (y - corner)) : at(px * (x - corner), py * y));
+      if (corner > 1e-6) moves.circle(at(px * (x - corner), py * (y - corner)), f * kPi / 2, pocket.feed_mm_per_s);
+    }
+    line(at(x, 0));
+  }
+  return true;
+}
+
+bool mill_pocket(const PocketCycle& given, const PlaneAxes& axes, const Vec3& from_mm, const PocketMoves& moves) {
+  constexpr double kRapid = std::numeric_limits<double>::infinity();
+  PocketCycle pocket = given;
+  Vec3 here = from_mm;  // end of the last line
+  const auto line = [&](const Vec3& end, double feed) { moves.line(here = end, feed); };
+  const PocketMoves noted{line, moves.circle};
+  const auto over_middle = [&](double height) {
+    Vec3 p = pocket.middle_mm;
+    p[axes.normal] = height;
+    return p;
+  };
+  const auto up = [&](double height) {
+    here[axes.normal] = height;
+    line(here, kRapid);
+    line(over_middle(height), kRapid);
+  };
+  const double surface = pocket.surface_mm, bottom = pocket.bottom_mm, clear = pocket.clearance_mm,
+               least = pocket.least_mm(), rough_bottom = bottom + pocket.floor_mm;
+  if ((surface - bottom) / pocket.step_mm > kMaxPecks) return false;
+  line(over_middle(here[axes.normal]), kRapid);
+  for (double z = surface; pocket.roughs && z > rough_bottom + 1e-9;) {
+    line(over_middle(z + (clear - surface)), kRapid);
+    z = std::max(z - pocket.step_mm, rough_bottom);
+    line(over_middle(z), pocket.plunge_mm_per_s);
+    if (!mill_pocket_level(pocket, axes, z, least, pocket.side_mm, noted)) return false;
+    up(z + (clear - surface));  // off the wall, back to the middle
+  }
+  if (pocket.finishes && (pocket.side_mm > 0 || pocket.floor_mm > 0)) {
+    pocket.feed_mm_per_s = pocket.finishing_mm_per_s;
+    const double infeed = pocket.finishing_step_mm > 0 ? pocket.finishing_step_mm : surface - bottom;
+    for (double z = surface; pocket.side_mm > 0 && z > bottom + 1e-9;) {
+      z = std::max(z - infeed, bottom);
+      line(over_middle(z), pocket.plunge_mm_per_s);
+      mill_pocket_level(pocket, axes, z, 0, 0, noted);
+      line(over_middle(z), pocket.finishing_mm_per_s);
+    }
+    if (pocket.floor_mm > 0) {
+      line(over_middle(bottom), pocket.plunge_mm_per_s);
+      if (!mill_pocket_level(pocket, axes, bottom, least, 0, noted)) return false;
+    }
+  }
+  up(clear);
+  return true;
+}
+
 }  // namespace camber::nc

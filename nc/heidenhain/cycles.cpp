@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "nc/canned_cycles.h"
 #include "nc/heidenhain/klartext.h"
 #include "nc/mode_words.h"
 
@@ -16,7 +15,8 @@ constexpr double kAboveLastDepthMm = 0.2;  ///< rapids in a hole stop so far abo
 constexpr double kFastFeed = 99999;        ///< FMAX in a parameter of a cycle
 
 /// Machining cycles that are made.
-constexpr std::array kMade{1, 2, 4, 5, 12, 17, 200, 201, 202, 203, 204, 205, 206, 207, 208, 209, 240, 241, 251, 252};
+constexpr std::array kMade{1,   2,   4,   5,   12,  17,  200, 201, 202, 203, 204,
+                           205, 206, 207, 208, 209, 240, 241, 251, 252, 253};
 
 struct Named {
   int first, last;
@@ -33,7 +33,7 @@ constexpr std::array kRefused{
     Named{39, 39, "a cylinder surface", "a path in X, Y and Z was expected"},
     Named{210, 219, "a slot, pocket or stud", "the finished path was expected"},
     Named{222, 233, "a milling cycle", "the finished path was expected"},
-    Named{253, 258, "a slot or stud", "the finished path was expected"},
+    Named{254, 258, "a slot or stud", "the finished path was expected"},
     Named{262, 267, "thread milling", "CP blocks of the helix were expected"},
     Named{268, 277, "an SL or OCM cycle", "the finished path was expected"},
     Named{278, 299, "a milling or turning cycle", "the finished path was expected"},
@@ -50,7 +50,8 @@ void Klartext::define_cycle(const Statement& s) {
   const auto number = at.integer();
   if (!number) throw FormulaError(s.begin, "cycle", "CYCL DEF without a number; CYCL DEF 200 was expected");
   int part = -1;
-  if (at.behind(0) == '.' && is_digit(at.behind(1))) {
+  if (Cursor point = at; point.peek() == '.' && is_digit(point.behind(1))) {  // CYCL DEF9 .0 of some posts
+    at = point;
     at.advance();
     part = at.integer().value_or(0);
   }
@@ -84,10 +85,14 @@ void Klartext::define_cycle(const Statement& s) {
     }
     at = parameter;
     named = true;
-    if (at.accept_prefix("FMAX"))
+    if (at.accept_prefix("FMAX") || at.accept("MAX"))
       parameters_.set(*name, kFastFeed);
-    else if (at.accept_prefix("FAUTO"))
+    else if (at.accept_prefix("FAUTO") || at.accept("AUTO"))
       parameters_.set(*name, tool_feed_ ? mm_per_min_from_mm_per_s(*tool_feed_) / unit_mm() : 0);
+    else if (at.accept_prefix("FU"))
+      parameters_.set(*name, read_value(at, parameters_) * 60 * turns_per_s("FU"));
+    else if (at.accept_prefix("FZ"))
+      parameters_.set(*name, read_value(at, parameters_) * 60 * teeth() * turns_per_s("FZ"));
     else if (at.letters() == "PREDEF")
       throw FormulaError(at.offset(), "not-supported", "PREDEF (GLOBAL DEF) is not supported; a number was expected");
     else if (name->kind == 'S')
@@ -115,8 +120,9 @@ void Klartext::define_cycle(const Statement& s) {
                     *number));
   }
   if (std::ranges::find(kMade, *number) == kMade.end())
-    return error(s.begin, "not-supported",
-                 fmt::format("CYCL DEF {} is not supported; 200 to 209, 240, 241, 251 and 252 were expected", *number));
+    return error(
+        s.begin, "not-supported",
+        fmt::format("CYCL DEF {} is not supported; 200 to 209, 240, 241 and 251 to 253 were expected", *number));
   cycle_ = {};
   cycle_.number = *number;
   cycle_.offset = s.begin;
@@ -126,26 +132,16 @@ void Klartext::define_cycle(const Statement& s) {
 void Klartext::define_old_cycle(int number, int part, Cursor at, const Statement& s) {
   const bool in_parts = number == 7 || number == 8 || number == 10 || number == 11 || number == 26;
   if (in_parts && part <= 0) return;
-  switch (number) {
-    case 7:
-      return shift_datum(at, s.begin);
-    case 8:
-      return set_mirror(at);
-    case 10:
-      return set_rotation(at);
-    case 11:
-      return set_scale(at);
-    case 26:
-      return set_axis_scale(at);
-    case 19:
-      return set_working_plane(at, part);
-    case 32:
-      return set_tolerance(part, at);
-    case 13:
-      if (part > 0) add_event(EventKind::spindle_orient, 19);
-      return;
-    default:
-      break;
+  if (number == 7) return shift_datum(at, s.begin);
+  if (number == 8) return set_mirror(at);
+  if (number == 10) return set_rotation(at);
+  if (number == 11) return set_scale(at);
+  if (number == 26) return set_axis_scale(at);
+  if (number == 19) return set_working_plane(at, part);
+  if (number == 32) return set_tolerance(part, at);
+  if (number == 13) {
+    if (part > 0) add_event(EventKind::spindle_orient, 19);
+    return;
   }
   if (number == 12) {
     if (part == 0) {
@@ -284,7 +280,10 @@ void Klartext::run_cycle_call(const Statement& s) {
       const std::size_t begin = at.offset();
       const char c = at.peek();
       at.advance();
-      if (c == 'F' && (at.accept("MAX") || at.accept("AUTO"))) continue;
+      if (c == 'F' && !begins_number(at)) {
+        at.accept("MAX") || at.accept("AUTO");
+        continue;
+      }
       if (c == 'M') {
         if (const auto code = at.integer()) functions.push_back({*code, std::nullopt, begin});
       } else if (c == 'F') {
@@ -372,8 +371,8 @@ void Klartext::call_cycle(std::size_t offset) {
     mill_bore();
   else if (cycle_.number == 4 || cycle_.number == 5)
     mill_old_pocket();
-  else if (cycle_.number == 251 || cycle_.number == 252)
-    mill_pocket();
+  else if (cycle_.number >= 251 && cycle_.number <= 253)
+    mill_pocket_cycle();
   else if (cycle_.is_old())
     drill_old();
   else
@@ -620,16 +619,16 @@ void Klartext::bore_back() {
   cycle_move(MoveKind::rapid, back, 0);
 }
 
+/// The value of CYCL DEF 1.2 and the like.
+double Klartext::old_value(int part) const {
+  if (const auto found = cycle_.values.find(part); found != cycle_.values.end()) return found->second;
+  throw FormulaError(cycle_.offset, "cycle", fmt::format("cycle {0} without its part {0}.{1}", cycle_.number, part));
+}
+
 /// Cycles 1, 2 and 17: the tool stands at the clearance above the surface.
 void Klartext::drill_old() {
   const double unit = unit_mm();
-  const auto value = [&](int part) {
-    const auto found = cycle_.values.find(part);
-    if (found == cycle_.values.end())
-      throw FormulaError(cycle_.offset, "cycle",
-                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
-    return found->second;
-  };
+  const auto value = [&](int part) { return old_value(part); };
   Hole h;
   h.clearance_mm = std::abs(value(1)) * unit;
   h.surface_mm = programmed()[tool_axis_] - h.clearance_mm;
@@ -741,89 +740,31 @@ void Klartext::mill_bore() {
   go(MoveKind::rapid, high);
 }
 
-// --- pockets: cycles 4, 5, 251 and 252
+// --- pockets: cycles 4, 5 and 251 to 253
 
-/// A pocket as cycle 4 or 251 (rectangular), 5 or 252 (circular) mills it, in programmed coordinates.
-struct Klartext::Pocket {
-  bool round = false;
-  Vec3 middle_mm = Vec3::Zero();
-  double angle_rad = 0;        ///< of the first side
-  double half_mm[2] = {0, 0};  ///< ways of the cutter's centre from the middle to the finished walls
-  double corner_mm = 0;        ///< radius of its way round the corners there
-  double cutter_mm = 0;        ///< radius
-  double sideways_mm = 0;      ///< at most, from ring to ring
-  double sense = 1;            ///< of the rings: 1 counter-clockwise
-  double feed_mm_per_s = 0;
-  double least_mm() const { return round ? half_mm[0] : std::min(half_mm[0], half_mm[1]); }
-};
+PocketMoves Klartext::pocket_moves() {
+  return {[this](const Vec3& end, double feed) { cycle_move(MoveKind::linear, end, feed); },
+          [this](const Vec3& centre, double sweep, double feed) {
+            cycle_circle(centre, sweep, programmed()[tool_axis_], feed);
+          }};
+}
 
-/// Rings in one height, from the middle outwards: the cutter's centre `from_mm` off the finished walls' way, measured
-/// inwards, to `to_mm`.
-void Klartext::mill_pocket_level(const Pocket& pocket, double height_mm, double from_mm, double to_mm) {
-  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
-  const double c = std::cos(pocket.angle_rad), s = std::sin(pocket.angle_rad);
-  const auto at = [&](double x, double y) {
-    Vec3 p = pocket.middle_mm;
-    p[axes.first] += c * x - s * y;
-    p[axes.second] += s * x + c * y;
-    p[axes.normal] = height_mm;
-    return p;
-  };
-  const double way = from_mm - to_mm;
-  if (const double x = pocket.half_mm[0] - from_mm, y = pocket.half_mm[1] - from_mm; !pocket.round && way > 0) {
-    // The long way of the middle first, which no ring reaches.
-    cycle_move(MoveKind::linear, at(-x, -y), pocket.feed_mm_per_s);
-    cycle_move(MoveKind::linear, at(x, y), pocket.feed_mm_per_s);
-    if (y > 0) cycle_move(MoveKind::linear, at(0, 0), pocket.feed_mm_per_s);
-  }
-  const int rings = std::max(1, static_cast<int>(std::ceil(way / pocket.sideways_mm - 1e-9)));
-  if (rings > kMaxPecks)
-    throw FormulaError(cycle_.offset, "cycle",
-                       "the pocket would take more than 100000 rings; a larger Q370 was expected");
-  for (int i = 1; i <= rings; ++i) {
-    const double inside = from_mm - way * i / rings;
-    const double x = pocket.half_mm[0] - inside, y = pocket.half_mm[1] - inside;
-    if (pocket.round) {
-      if (x < 1e-6) continue;
-      cycle_move(MoveKind::linear, at(x, 0), pocket.feed_mm_per_s);
-      cycle_circle(pocket.middle_mm, pocket.sense * 2 * kPi, height_mm, pocket.feed_mm_per_s);
-      continue;
-    }
-    const double corner = std::max(0.0, std::min({pocket.corner_mm - inside, x, y}));
-    const double f = pocket.sense;
-    cycle_move(MoveKind::linear, at(x, 0), pocket.feed_mm_per_s);
-    // Half a side, then corner and side four times, the last one again half.
-    const double corners[4][2] = {{1, f}, {-1, f}, {-1, -f}, {1, -f}};
-    for (int k = 0; k < 4; ++k) {
-      const double px = corners[k][0], py = corners[k][1];
-      const bool along_y = k % 2 == 0;  // comes in along the second side, leaves along the first
-      const Vec3 in = along_y ? at(px * x, py * (y - corner)) : at(px * (x - corner), py * y);
-      cycle_move(MoveKind::linear, in, pocket.feed_mm_per_s);
-      if (corner > 1e-6)
-        cycle_circle(at(px * (x - corner), py * (y - corner)), f * kPi / 2, height_mm, pocket.feed_mm_per_s);
-    }
-    cycle_move(MoveKind::linear, at(x, 0), pocket.feed_mm_per_s);
-  }
+/// Radius of the cutter; without it there is no pocket.
+double Klartext::pocket_cutter_mm() const {
+  if (const auto tool = cutter_radius_mm(); tool && *tool > 0) return *tool;
+  throw FormulaError(
+      cycle_.offset, "radius-unknown",
+      fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
+                  "with R, or the finished path, was expected",
+                  cycle_.number, state_.tool, state_.tool));
 }
 
 /// Cycles 4 and 5: a pocket from its middle outwards, in depths. The tool stands at the clearance above the middle.
 void Klartext::mill_old_pocket() {
   const double unit = unit_mm();
   const bool round = cycle_.number == 5;
-  const auto tool = cutter_radius_mm();
-  if (!tool || *tool <= 0)
-    throw FormulaError(
-        cycle_.offset, "radius-unknown",
-        fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
-                    "with R, or the finished path, was expected",
-                    cycle_.number, state_.tool, state_.tool));
-  const auto value = [&](int part) {
-    const auto found = cycle_.values.find(part);
-    if (found == cycle_.values.end())
-      throw FormulaError(cycle_.offset, "cycle",
-                         fmt::format("cycle {} without its part {}.{}", cycle_.number, cycle_.number, part));
-    return found->second * unit;
-  };
+  const double tool = pocket_cutter_mm();
+  const auto value = [&](int part) { return old_value(part) * unit; };
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   const double clearance = std::abs(value(1)), depth = std::abs(value(2)), step = std::abs(value(3));
   const double plunge = cycle_.feeds.contains(3) ? cycle_.feeds[3] : feed_.value_or(0);
@@ -833,14 +774,14 @@ void Klartext::mill_old_pocket() {
     throw FormulaError(cycle_.offset, "feed-missing", "the pocket has no feed; F was expected in its parts");
   if (step <= 0)
     throw FormulaError(cycle_.offset, "cycle", "the pocket has no depth of each cut; its part 3 was expected");
-  Pocket pocket;
+  PocketCycle pocket;
   pocket.round = round;
-  pocket.half_mm[0] = round ? value(4) - *tool : 0.5 * std::abs(value(4)) - *tool;
-  pocket.half_mm[1] = round ? pocket.half_mm[0] : 0.5 * std::abs(value(5)) - *tool;
+  pocket.half_mm[0] = round ? value(4) - tool : 0.5 * std::abs(value(4)) - tool;
+  pocket.half_mm[1] = round ? pocket.half_mm[0] : 0.5 * std::abs(value(5)) - tool;
   if (pocket.least_mm() < -1e-9 || pocket.half_mm[1] < -1e-9)
     throw FormulaError(cycle_.offset, "cutter-too-large", "the pocket is smaller than the tool");
   constexpr double kOverlap = 1.4;  // of the radius: MP7430
-  pocket.sideways_mm = kOverlap * *tool;
+  pocket.sideways_mm = kOverlap * tool;
   pocket.sense = cycle_.sense;
   pocket.feed_mm_per_s = feed;
   pocket.middle_mm = programmed();
@@ -852,62 +793,69 @@ void Klartext::mill_old_pocket() {
     Vec3 floor = middle;
     floor[axes.normal] = z;
     cycle_move(MoveKind::linear, floor, plunge);
-    mill_pocket_level(pocket, z, pocket.least_mm(), 0);
+    if (!mill_pocket_level(pocket, axes, z, pocket.least_mm(), 0, pocket_moves())) return too_many_cuts();
     cycle_move(MoveKind::linear, floor, feed);
   }
   cycle_move(MoveKind::rapid, middle, 0);
 }
 
-/// Roughing from the middle outwards in depths of Q202, up to the allowances; then the walls in depths of Q338, and the
-/// floor from the middle outwards. On a real control the ways from ring to ring, those on and off the walls and the
-/// plunge along a helix or to and fro differ.
-void Klartext::mill_pocket() {
+void Klartext::too_many_cuts() const {
+  throw FormulaError(
+      cycle_.offset, "cycle",
+      fmt::format("cycle {} would take more than 100000 rings or depths; larger ones were expected", cycle_.number));
+}
+
+/// Cycles 251 to 253.
+void Klartext::mill_pocket_cycle() {
   const double unit = unit_mm();
   const int number = cycle_.number;
-  const auto tool = cutter_radius_mm();
-  if (!tool || *tool <= 0)
-    throw FormulaError(cycle_.offset, "radius-unknown",
-                       fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL "
-                                   "DEF {} with R, or the finished path, was expected",
-                                   number, state_.tool, state_.tool));
-  Pocket pocket;
+  const double tool = pocket_cutter_mm();
+  PocketCycle pocket;
   pocket.round = number == 252;
-  pocket.cutter_mm = *tool;
-  const double side = q_if_set(368).value_or(0) * unit, floor = q_if_set(369).value_or(0) * unit;
-  const double surface = q_if_set(203).value_or(0) * unit, bottom = surface + q(201) * unit;
-  const double clear = surface + std::abs(q(200)) * unit,
-               high = std::max(clear, surface + q_if_set(204).value_or(0) * unit);
-  const double step = std::abs(q(202)) * unit, plunge = feed_q(206);
+  pocket.side_mm = q_if_set(368).value_or(0) * unit;
+  pocket.floor_mm = q_if_set(369).value_or(0) * unit;
+  pocket.surface_mm = q_if_set(203).value_or(0) * unit;
+  pocket.bottom_mm = pocket.surface_mm + q(201) * unit;
+  pocket.clearance_mm = pocket.surface_mm + std::abs(q(200)) * unit;
+  pocket.step_mm = std::abs(q(202)) * unit;
+  pocket.plunge_mm_per_s = feed_q(206);
+  pocket.finishing_step_mm = std::abs(q_if_set(338).value_or(0)) * unit;
   const int operation = static_cast<int>(q_if_set(215).value_or(0));
-  const double overlap = q_if_set(370).value_or(1);
+  pocket.roughs = operation != 2;
+  pocket.finishes = operation != 1;
+  const bool slot = number == 253;
+  const double overlap = slot ? 1 : q_if_set(370).value_or(1);
   pocket.feed_mm_per_s = feed_q(207);
-  const double finishing = q_if_set(385) ? feed_q(385) : pocket.feed_mm_per_s;
-  if (pocket.feed_mm_per_s <= 0 || plunge <= 0 || finishing <= 0 || std::isinf(pocket.feed_mm_per_s))
+  pocket.finishing_mm_per_s = q_if_set(385) ? feed_q(385) : pocket.feed_mm_per_s;
+  if (pocket.feed_mm_per_s <= 0 || pocket.plunge_mm_per_s <= 0 || pocket.finishing_mm_per_s <= 0 ||
+      std::isinf(pocket.feed_mm_per_s))
     throw FormulaError(cycle_.offset, "feed-missing",
                        fmt::format("cycle {} has no feed; Q206 and Q207 greater than zero were expected", number));
-  if (bottom >= surface || step <= 0)
+  if (pocket.bottom_mm >= pocket.surface_mm || pocket.step_mm <= 0)
     throw FormulaError(cycle_.offset, "cycle",
                        fmt::format("cycle {} needs a negative depth Q201 and a depth of each cut Q202", number));
   if (!(overlap > 0 && overlap < 2))
     throw FormulaError(cycle_.offset, "cycle",
                        fmt::format("an overlap Q370 of {:g}; greater than 0 and less than 2 was expected", overlap));
   const double whole_x = (pocket.round ? q(223) : q(218)) * unit, whole_y = (pocket.round ? q(223) : q(219)) * unit;
-  pocket.half_mm[0] = 0.5 * std::abs(whole_x) - *tool;
-  pocket.half_mm[1] = 0.5 * std::abs(whole_y) - *tool;
-  if (pocket.least_mm() - side < -1e-9)
+  pocket.half_mm[0] = 0.5 * std::abs(whole_x) - tool;
+  pocket.half_mm[1] = 0.5 * std::abs(whole_y) - tool;
+  if (pocket.least_mm() - pocket.side_mm < -1e-9)
     throw FormulaError(cycle_.offset, "cutter-too-large",
                        fmt::format("the pocket of cycle {} is smaller than the tool of {:.4f} mm and its allowance",
-                                   number, 2 * *tool));
+                                   number, 2 * tool));
   if (!pocket.round) {
-    pocket.corner_mm = std::max(0.0, std::abs(q_if_set(220).value_or(0)) * unit - *tool);
-    pocket.angle_rad = rad_from_deg(q_if_set(224).value_or(0));
+    pocket.corner_mm = slot ? pocket.half_mm[1] : std::max(0.0, std::abs(q_if_set(220).value_or(0)) * unit - tool);
+    pocket.angle_rad = rad_from_deg(q_if_set(slot ? 374 : 224).value_or(0));
   }
   const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   pocket.middle_mm = programmed();
   if (const int place = static_cast<int>(q_if_set(367).value_or(0)); place > 0 && !pocket.round) {
-    // The tool stands at a corner: 1 lower left, 2 lower right, 3 upper right, 4 upper left.
-    const double x = (place == 1 || place == 4 ? 0.5 : -0.5) * std::abs(whole_x),
-                 y = (place <= 2 ? 0.5 : -0.5) * std::abs(whole_y);
+    // The tool stands at a corner: 1 lower left, 2 lower right, 3 upper right, 4 upper left. Of a slot: 1 left end, 2
+    // and 3 centres of its left and right arc, 4 right end.
+    const bool left = slot ? place <= 2 : place == 1 || place == 4, at_arc = slot && (place == 2 || place == 3);
+    const double x = (left ? 0.5 : -0.5) * (std::abs(whole_x) - (at_arc ? std::abs(whole_y) : 0)),
+                 y = slot ? 0 : (place <= 2 ? 0.5 : -0.5) * std::abs(whole_y);
     const double c = std::cos(pocket.angle_rad), s = std::sin(pocket.angle_rad);
     pocket.middle_mm[axes.first] += c * x - s * y;
     pocket.middle_mm[axes.second] += s * x + c * y;
@@ -915,7 +863,7 @@ void Klartext::mill_pocket() {
   // Climb cutting inside goes round counter-clockwise where the spindle turns clockwise.
   const bool climb = q_if_set(351).value_or(1) >= 0;
   pocket.sense = climb == (state_.spindle != SpindleDirection::counter_clockwise) ? 1 : -1;
-  pocket.sideways_mm = overlap * *tool;
+  pocket.sideways_mm = overlap * tool;
   prepare_cutting("a cycle", 0);
   if (q_if_set(366).value_or(0) != 0 && operation != 2)
     warn(cycle_.offset, "cycle",
@@ -923,48 +871,10 @@ void Klartext::mill_pocket() {
                      "read as a vertical one",
                      number),
          "Q366");
-  const auto over_middle = [&](double height) {
-    Vec3 p = pocket.middle_mm;
-    p[axes.normal] = height;
-    return p;
-  };
-  cycle_move(MoveKind::rapid, over_middle(programmed()[axes.normal]), 0);
-  const double least = pocket.least_mm();
-  if (operation != 2) {
-    const double rough_bottom = bottom + floor;
-    for (double z = surface; z > rough_bottom + 1e-9;) {
-      const double before = z;
-      z = std::max(z - step, rough_bottom);
-      cycle_move(MoveKind::rapid, over_middle(before == surface ? clear : before + (clear - surface)), 0);
-      cycle_move(MoveKind::linear, over_middle(z), plunge);
-      mill_pocket_level(pocket, z, least, side);
-      // Off the wall, up by the clearance, back to the middle.
-      Vec3 up = programmed();
-      up[axes.normal] = z + (clear - surface);
-      cycle_move(MoveKind::rapid, up, 0);
-      cycle_move(MoveKind::rapid, over_middle(up[axes.normal]), 0);
-    }
-  }
-  if (operation != 1 && (side > 0 || floor > 0)) {
-    pocket.feed_mm_per_s = finishing;
-    const double infeed = std::abs(q_if_set(338).value_or(0)) * unit, whole = surface - bottom;
-    if (side > 0)
-      for (double z = surface; z > bottom + 1e-9;) {
-        z = std::max(z - (infeed > 0 ? infeed : whole), bottom);
-        cycle_move(MoveKind::linear, over_middle(z), plunge);
-        mill_pocket_level(pocket, z, 0, 0);
-        cycle_move(MoveKind::linear, over_middle(z), finishing);
-      }
-    if (floor > 0) {
-      cycle_move(MoveKind::linear, over_middle(bottom), plunge);
-      mill_pocket_level(pocket, bottom, least, 0);
-    }
-  }
-  Vec3 up = programmed();
-  up[axes.normal] = clear;
-  cycle_move(MoveKind::rapid, up, 0);
-  cycle_move(MoveKind::rapid, over_middle(clear), 0);
-  cycle_move(MoveKind::rapid, over_middle(high), 0);
+  if (!mill_pocket(pocket, axes, programmed(), pocket_moves())) return too_many_cuts();
+  Vec3 high = programmed();
+  high[axes.normal] = std::max(pocket.clearance_mm, pocket.surface_mm + q_if_set(204).value_or(0) * unit);
+  cycle_move(MoveKind::rapid, high, 0);
 }
 
 // --- patterns
@@ -1050,10 +960,21 @@ void Klartext::define_pattern(const Statement& s) {
     while (at.more() && at.peek() != ')') {
       const std::size_t here = at.offset();
       const std::string word = at.letters();
-      if (word.empty())
+      const bool step = word == "IX" || word == "IY";  // from the place before
+      constexpr std::array<std::string_view, 14> kWords{"X",    "Y",  "Z",  "D",    "NUM",  "ROT",   "ROTX",
+                                                        "ROTY", "DX", "DY", "NUMX", "NUMY", "START", "STEP"};
+      if (!step && std::ranges::find(kWords, word) == kWords.end())
         throw FormulaError(here, "cycle", fmt::format("{} in PATTERN DEF; X, Y or Z was expected", at.word()));
       at.advance(word.size());
-      values[word] = known(read_value(at, parameters_), here);
+      const double value = known(read_value(at, parameters_), here);
+      if (step && pattern_.empty())
+        throw FormulaError(here, "cycle",
+                           fmt::format("{} in the first place of PATTERN DEF; X and Y were expected", word));
+      const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
+      if (step)
+        values[word.substr(1)] = value + pattern_.back()[word == "IX" ? axes.first : axes.second] / unit_mm();
+      else
+        values[word] = value;
     }
     if (!at.accept(')')) throw FormulaError(begin, "cycle", "the bracket ( of PATTERN DEF is not closed");
     const auto value = [&](const char* name) {

@@ -101,57 +101,36 @@ bool Klartext::step() {
 
 void Klartext::execute(const Statement& s) {
   if (has_words(s.kind)) return run_path(s);
+  using Run = void (Klartext::*)(const Statement&);
+  static constexpr std::pair<Kind, Run> kRun[] = {{Kind::tool_call, &Klartext::call_tool},
+                                                  {Kind::tool_def, &Klartext::define_tool},
+                                                  {Kind::blank_form, &Klartext::read_blank_form},
+                                                  {Kind::call_label, &Klartext::call_label},
+                                                  {Kind::assignment, &Klartext::assign},
+                                                  {Kind::function, &Klartext::run_function},
+                                                  {Kind::cycle_def, &Klartext::define_cycle},
+                                                  {Kind::cycle_call, &Klartext::run_cycle_call},
+                                                  {Kind::plane, &Klartext::run_plane},
+                                                  {Kind::tcpm, &Klartext::run_tcpm},
+                                                  {Kind::transform, &Klartext::run_transform},
+                                                  {Kind::pattern, &Klartext::define_pattern},
+                                                  {Kind::dwell, &Klartext::run_dwell},
+                                                  {Kind::refused, &Klartext::refuse}};
+  for (const auto& [kind, run] : kRun)
+    if (s.kind == kind) return (this->*run)(s);
   switch (s.kind) {
     case Kind::end_program:
       note_rest(s);
       end_program();
-      break;
-    case Kind::tool_call:
-      call_tool(s);
-      break;
-    case Kind::tool_def:
-      define_tool(s);
-      break;
-    case Kind::blank_form:
-      read_blank_form(s);
       break;
     case Kind::label: {
       const auto number = cursor(s).integer();
       if (number && *number == 0 && !level().is_program) levels_.pop_back();
       break;
     }
-    case Kind::call_label:
-      call_label(s);
-      break;
     case Kind::call_program:
-      call_program(s, false);
-      break;
     case Kind::select_program:
-      call_program(s, true);
-      break;
-    case Kind::assignment:
-      assign(s);
-      break;
-    case Kind::function:
-      run_function(s);
-      break;
-    case Kind::cycle_def:
-      define_cycle(s);
-      break;
-    case Kind::cycle_call:
-      run_cycle_call(s);
-      break;
-    case Kind::plane:
-      run_plane(s);
-      break;
-    case Kind::tcpm:
-      run_tcpm(s);
-      break;
-    case Kind::transform:
-      run_transform(s);
-      break;
-    case Kind::pattern:
-      define_pattern(s);
+      call_program(s, s.kind == Kind::select_program);
       break;
     case Kind::stop: {
       add_event(EventKind::m_code, 0);
@@ -160,9 +139,6 @@ void Klartext::execute(const Statement& s) {
         if (const auto code = at.integer()) run_m({*code, std::nullopt, s.begin});
       break;
     }
-    case Kind::dwell:
-      run_dwell(s);
-      break;
     case Kind::noted: {
       Cursor at(file().source.text(), s.begin, s.end);
       std::string name = at.letters();
@@ -173,9 +149,6 @@ void Klartext::execute(const Statement& s) {
       warn(s.begin, "no-effect", fmt::format("{} is read without effect", name), name);
       break;
     }
-    case Kind::refused:
-      refuse(s);
-      break;
     default:
       break;
   }
@@ -217,6 +190,9 @@ std::string Klartext::label_name(Cursor& at) {
   const std::size_t offset = at.offset();
   if (at.peek() == 'Q') {
     if (const auto name = read_parameter(at)) {
+      if (name->kind == 'S' && !parameters_.is_defined(*name))
+        throw FormulaError(offset, "undefined-parameter",
+                           name->text() + " has no text here; a name was expected before");
       if (name->kind == 'S') return parameters_.text(name->number);
       return fmt::format("{}", std::lround(known(parameters_.value(*name, offset), offset)));
     }
@@ -238,7 +214,7 @@ void Klartext::call_label(const Statement& s) {
   Cursor at = cursor(s);
   const std::string label = label_name(at);
   const std::size_t index = static_cast<std::size_t>(&s - tree().statements.data());
-  if (at.accept_prefix("REP")) {
+  if (at.accept_prefix("REP") && at.more()) {  // REP without a number: a subprogram, as older controls write it
     const std::size_t offset = at.offset();
     const double count = known(read_value(at, parameters_), offset);
     if (count < 0 || count > 65534)
@@ -401,7 +377,7 @@ void Klartext::assign(const Statement& s) {
     const std::size_t begin = at.offset();
     const auto name = read_parameter(at);
     if (!name || !at.accept('='))
-      throw FormulaError(begin, "expression", fmt::format("{}: Q5 = and a formula was expected", at.word()));
+      return error(begin, "expression", fmt::format("{}: Q5 = and a formula was expected", at.word()));
     if (name->kind == 'S')
       parameters_.set_text(name->number, read_text_formula(at, parameters_));
     else if (!set_or_say(*name, s, [&] { return read_formula(at, parameters_); }))
@@ -441,6 +417,22 @@ void Klartext::jump_behind_goto(Cursor& at, const Statement& s) {
   jump(label_name(at), s.begin);
 }
 
+/// = ID50 NR2 IDX5: number, length and radius of a tool, where they are given.
+std::optional<double> Klartext::asked_of_control(Cursor at) {
+  const auto number = [&](std::string_view word) { return at.accept_prefix(word) ? read_value(at, parameters_) : -1; };
+  at.accept('=');
+  const double group = number("ID"), which = number("NR"), index = number("IDX");
+  const int tool = index < 0 ? state_.tool : static_cast<int>(index);
+  if (group == 20 && which == 1) return state_.tool;
+  if (group != 50 || (which != 1 && which != 2)) return std::nullopt;
+  const auto found = tools_.find(tool);
+  std::optional<double> value = found == tools_.end() ? std::nullopt
+                                : which == 1          ? found->second.length_mm
+                                                      : found->second.radius_mm;
+  if (!value && which == 2) value = nc::cutter_radius_mm(options_.tool_offsets, tool);
+  return value ? std::optional(*value / unit_mm()) : std::nullopt;
+}
+
 /// FN 0 to FN 38.
 void Klartext::run_function(const Statement& s) {
   Cursor at = cursor(s);
@@ -450,18 +442,15 @@ void Klartext::run_function(const Statement& s) {
   const auto other = [&](const char* what) { error(s.begin, "not-supported", what, what); };
   switch (*number) {
     case 14:
+      at.accept("ERROR");
+      at.accept('=');
+      error(s.begin, "program-error",
+            fmt::format("the program ends here with error {} (FN 14); conditions that do not lead here were expected",
+                        read_value(at, parameters_)));
+      ended_ = true;
+      return;
     case 15:
     case 16:
-      if (*number == 14) {
-        at.accept("ERROR");
-        at.accept('=');
-        const double code = read_value(at, parameters_);
-        error(s.begin, "program-error",
-              fmt::format("the program ends here with error {} (FN 14); conditions that do not lead here were expected",
-                          code));
-        ended_ = true;
-        return;
-      }
       return;  // printing
     case 17:
     case 19:
@@ -475,6 +464,7 @@ void Klartext::run_function(const Statement& s) {
       at.accept("SYSREAD");
       const auto name = read_parameter(at);
       if (!name) throw FormulaError(s.begin, "function", "FN 18 without a parameter; FN 18: SYSREAD Q1 = was expected");
+      if (const auto value = asked_of_control(at)) return parameters_.set(*name, *value);
       parameters_.set_unknown(*name, fmt::format("{} is read from the control (FN 18) in line {}", name->text(),
                                                  file().source.location(s.begin).line));
       return;

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "nc/canned_cycles.h"
 #include "nc/corner_cut.h"
 #include "nc/cutter_radius.h"
 #include "nc/frames.h"
@@ -127,6 +128,7 @@ class Klartext {
   void assign(const Statement& s);
   bool set_or_say(const ParameterName& name, const Statement& s, const std::function<double()>& value);
   void run_function(const Statement& s);
+  std::optional<double> asked_of_control(Cursor at);
   std::optional<bool> definition_asked(Cursor& at) const;
   void jump_behind_goto(Cursor& at, const Statement& s);
   std::string label_name(Cursor& at);
@@ -230,12 +232,14 @@ class Klartext {
   void call_cycle(std::size_t offset);
   void run_cycle_call(const Statement& s);
   void drill(int number);
+  double old_value(int part) const;
   void drill_old();
   void mill_bore();
   void mill_old_pocket();
-  void mill_pocket();
-  struct Pocket;
-  void mill_pocket_level(const Pocket& pocket, double height_mm, double from_mm, double to_mm);
+  void mill_pocket_cycle();
+  PocketMoves pocket_moves();
+  double pocket_cutter_mm() const;
+  [[noreturn]] void too_many_cuts() const;
   void run_pattern(int number);
   void define_pattern(const Statement& s);
   struct Hole {

@@ -1,6 +1,7 @@
 #include "nc/heidenhain/parameters.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -235,6 +236,12 @@ class Formula {
     if (name == "STRCOMP") return strcomp(begin);
     if (name == "INSTR") return instr(begin);
     if (name == "CFGREAD" || name == "SYSSTR") return parameters_.of_control(at_, name);
+    constexpr std::array<std::string_view, 16> kOfNumber{"SQ", "SQRT", "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN",
+                                                         "LN", "LOG",  "EXP", "NEG", "ABS", "INT",  "FRAC", "SGN"};
+    if (std::ranges::find(kOfNumber, name) == kOfNumber.end())
+      throw FormulaError(begin, "expression",
+                         fmt::format("{} is no function of a formula; {} or SGN was expected", name,
+                                     fmt::join(kOfNumber.begin(), kOfNumber.end() - 1, ", ")));
     const double x = signed_power();
     if (name == "SQ") return x * x;
     if (name == "SQRT") {
@@ -259,12 +266,7 @@ class Formula {
     if (name == "ABS") return std::abs(x);
     if (name == "INT") return std::trunc(x);
     if (name == "FRAC") return x - std::trunc(x);
-    if (name == "SGN") return x > 0 ? 1 : x < 0 ? -1 : 0;
-    throw FormulaError(
-        begin, "expression",
-        fmt::format("{} is no function of a formula; SQ, SQRT, SIN, COS, TAN, ASIN, ACOS, ATAN, LN, LOG, "
-                    "EXP, NEG, ABS, INT, FRAC or SGN was expected",
-                    name));
+    return x > 0 ? 1 : x < 0 ? -1 : 0;  // SGN
   }
 
   /// Multiples of 90 degrees exactly.

@@ -206,7 +206,8 @@ class Reader {
       return take(Kind::line, 0);
     if (word == "C" && begins_value(second)) return take(Kind::line, 0);
     if (word.size() == 2 && word[0] == 'I' && is_axis(word[1])) return take(Kind::line, 0);
-    if (word == "M" || word == "F" || word == "FMAX" || (word == "S" && begins_value(second)))
+    if (word == "M" || word == "F" || word == "FMAX" || word == "R" || word == "RL" || word == "RR" ||
+        (word == "S" && begins_value(second)))
       return take(Kind::functions, 0);
     const auto known = std::ranges::find(kKeywords, word, &Keyword::word);
     if (known != kKeywords.end()) return take(known->kind, word.size());
@@ -299,8 +300,8 @@ class Reader {
     std::string unit;
     if (last != std::string_view::npos)
       for (std::size_t i = first; i <= last; ++i) unit += upper(line[i]);
-    tree_.inch = unit == "INCH";
-    if (unit != "INCH" && unit != "MM")
+    tree_.inch = unit == "INCH" || unit == "IN";
+    if (!tree_.inch && unit != "MM")
       report_.warning(s.begin, "unit-missing", "BEGIN PGM names no unit; MM or INCH was expected, MM is assumed");
   }
 
@@ -323,6 +324,7 @@ class Reader {
     const std::size_t begin = at.offset();
     const char c = at.peek(), next = at.behind(1);
     if (after_m_ >= 0 && read_argument(at, begin)) return true;
+    if (is_unanswered(c, begin, at.end())) return at.advance(), true;
     if (c == 'I' && is_axis(next)) return value_word(at, begin, next, 2);
     if (c == 'I' && next == 'P' && at.behind(2) == 'A') return value_word(at, begin, letter::kPolarAngle, 3);
     if (c == 'I' && next == 'P' && at.behind(2) == 'R') return value_word(at, begin, letter::kPolarRadius, 3);
@@ -357,6 +359,16 @@ class Reader {
         begin, "not-a-word",
         fmt::format("{} is no word of a Klartext block; coordinates, R0, F, DR or M were expected", at.word()));
     return false;
+  }
+
+  /// R, F or M alone, as older controls and their posts write a question that was not answered: what was before holds.
+  bool is_unanswered(char c, std::size_t begin, std::size_t end) const {
+    const bool has_radius = kind_ == Kind::radius_arc || kind_ == Kind::rounding || kind_ == Kind::chamfer;
+    if (c != 'F' && c != 'M' && (c != 'R' || has_radius)) return false;
+    if (begin + 1 < end && !is_blank(text_[begin + 1]) && text_[begin + 1] != ';') return false;
+    Cursor behind(text_, begin + 1, end);
+    const std::string word = behind.letters();
+    return !begins_value(behind.peek()) && (c != 'F' || (word != "MAX" && word != "AUTO"));
   }
 
   void add(char letter, std::size_t begin, std::size_t value_at, std::size_t end, double value) {

@@ -32,6 +32,8 @@ struct CycleCall {
 
   bool has(std::size_t i) const { return i < values.size() && values[i].has_value() && !values[i]->text; }
   double number(std::size_t i, double otherwise = 0) const { return has(i) ? values[i]->number : otherwise; }
+  /// Of a parameter whose digits have meanings of their own: the one at 1, 10, 100 ...
+  int digit(std::size_t i, int power) const { return static_cast<int>(number(i)) / power % 10; }
   std::string text(std::size_t i) const {
     return i < values.size() && values[i] && values[i]->text ? *values[i]->text : std::string();
   }
@@ -78,6 +80,8 @@ class BlockRunner : public SystemValues {
   void set_modal_rounding(double value) { modal_rounding_mm_ = value * unit_mm(); }
   void set_block_feed(double value) { request_.block_feed = value; }
   void set_corner_feed(double value, bool modal) { (modal ? modal_corner_feed_ : request_.corner_feed) = value; }
+  /// POS, POSA: the axis goes there by itself.
+  void position_axis(char letter, const Slot& slot);
   void orient_spindle() { add_event(EventKind::spindle_orient, 0); }
   void set_frame_variable(const std::string& name, const std::vector<double>& indexes,
                           const std::vector<std::string>& index_names, const Value& value, std::uint32_t offset);
@@ -107,8 +111,10 @@ class BlockRunner : public SystemValues {
   /// Non-modal requests of the block.
   struct Request {
     bool exact_stop = false, machine_frame = false, dwell = false, trouble = false;
-    bool fixed_point = false;  // G74, G75
-    int pole = 0;              // G110, G111, G112
+    bool fixed_point = false;      // G74, G75
+    int pole = 0;                  // G110, G111, G112
+    int shift = 0;                 // G58, G59
+    std::uint32_t positioned = 0;  // bit i: POS or POSA of the axis 'A' + i
     bool motion_given = false;
     std::uint32_t motion_offset = 0;
     const WordRow* frame = nullptr;
@@ -154,6 +160,7 @@ class BlockRunner : public SystemValues {
   void update_frame();
   Affine total_frame() const;
   void run_frame_command();
+  void set_programmable_shift();
   void swivel(const CycleCall& call, const BlockPlace& place);
   Vec3 programmed() const { return frame_.to_program(position_mm_); }
   void settle_machine_axis(std::size_t axis, double machine_mm, Vec3& place_mm);
@@ -213,6 +220,11 @@ class BlockRunner : public SystemValues {
   // cycles.cpp
   void drill(const CycleCall& call);
   void mill_thread(const CycleCall& call);
+  void mill_pocket_cycle(const CycleCall& call);
+  void mill_face(const CycleCall& call);
+  bool begin_milling(const CycleCall& call);
+  double cutter_radius_mm(const CycleCall& call, bool needed);
+  void rapid_to_height(double height_mm);
   void go(CycleStep::Kind kind, const Vec3& program_mm, double feed_mm_per_s, int g);
   void go_round(const Vec3& end, const Vec3& centre, double sweep_rad, double feed_mm_per_s);
   std::optional<double> cycle_feed(double given, const CycleCall& call, const char* what);
@@ -260,8 +272,9 @@ class BlockRunner : public SystemValues {
   double adis_mm_ = 0;
 
   WorkOffsets offsets_;
-  Affine programmable_;              ///< TRANS, ROT, SCALE, MIRROR
-  std::optional<Affine> swivelled_;  ///< CYCLE800
+  Affine programmable_;                ///< TRANS, ROT, SCALE, MIRROR
+  Vec3 fine_shift_mm_ = Vec3::Zero();  ///< part of it that G59 has set
+  std::optional<Affine> swivelled_;    ///< CYCLE800
   Frame frame_;
   Vec3 pole_mm_ = Vec3::Zero();
   double polar_angle_deg_ = 0, polar_radius_mm_ = 0;

@@ -21,6 +21,9 @@ struct Slot {
 /// Addresses of more than one letter.
 enum class Extra : std::uint8_t { cr, ar, ap, rp, turn, i1, j1, k1, chf, chr, rnd, ang, adis, rpl, a3, b3, c3, count };
 
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(Extra::count)> kExtraNames{
+    "CR", "AR", "AP", "RP", "TURN", "I1", "J1", "K1", "CHF", "CHR", "RND", "ANG", "ADIS", "RPL", "A3", "B3", "C3"};
+
 struct CodeWord {
   int number = 0;
   std::uint32_t offset = 0;

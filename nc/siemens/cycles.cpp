@@ -54,6 +54,12 @@ void BlockRunner::go(CycleStep::Kind kind, const Vec3& program_mm, double feed_m
     if (program_mm[axis] != before[axis]) place_[static_cast<std::size_t>(axis)] = AxisPlace::known;
 }
 
+void BlockRunner::rapid_to_height(double height_mm) {
+  Vec3 end = programmed();
+  end[axes_of(plane_).normal] = height_mm;
+  go(CycleStep::Kind::rapid, end, 0, 0);
+}
+
 void BlockRunner::go_round(const Vec3& end, const Vec3& centre, double sweep_rad, double feed_mm_per_s) {
   Arc arc;
   arc.center_mm = centre;
@@ -85,6 +91,12 @@ void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
       break;
     case Does::thread_milling:
       mill_thread(call);
+      break;
+    case Does::pocket:
+      mill_pocket_cycle(call);
+      break;
+    case Does::face:
+      mill_face(call);
       break;
     case Does::cycle800:
       swivel(call, place);
@@ -132,7 +144,7 @@ std::optional<double> BlockRunner::cycle_feed(double given, const CycleCall& cal
           fmt::format("{} without a feed ({}); F greater than zero was expected before", call.row->name, what), "feed");
     return std::nullopt;
   }
-  return cutting_feed(0, call.row->name.data());
+  return cutting_feed(0, name_of(call).c_str());
 }
 
 /// CYCLE81 to CYCLE89 and CYCLE840 where the tool stands. RTP, RFP, SDIS, DP, DPR come first in all of them.
@@ -317,13 +329,32 @@ void BlockRunner::drill(const CycleCall& call) {
   }
 }
 
+bool BlockRunner::begin_milling(const CycleCall& call) {
+  const std::string name = name_of(call);
+  check_unit();
+  settle_axes_for(name.c_str(), false);
+  if (!radius_.active || radius_.radius_mm == 0) return true;
+  error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
+  return false;
+}
+
+/// Of the tool's offset, else of its cutter; 0: nothing gives it, which an error says where a cycle cannot do without.
+double BlockRunner::cutter_radius_mm(const CycleCall& call, bool needed) {
+  if (const auto tool = tool_offsets_.find(state_.tool); tool != tool_offsets_.end() && edge_ != 0)
+    if (const auto radius = tool->second.effective_radius_mm()) return *radius;
+  const double radius = nc::cutter_radius_mm(options_.tool_offsets, state_.tool).value_or(0);
+  if (radius <= 0 && needed)
+    error(call.offset, "radius-unknown",
+          fmt::format("{} needs the radius of tool {}, which nothing gives; the diameter of the cutter was expected in "
+                      "the job",
+                      call.row->name, state_.tool));
+  return radius;
+}
+
 /// CYCLE90: a helix on the thread's diameter, less or more the tool's radius, with semicircles in and out.
 void BlockRunner::mill_thread(const CycleCall& call) {
   const std::string name = name_of(call);
-  check_unit();
-  prepare_cutting(name.c_str());
-  if (radius_.active && radius_.radius_mm != 0)
-    return error(call.offset, "cutter-radius", fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
+  if (!begin_milling(call)) return;
   const double unit = unit_mm();
   const double rtp = call.number(0) * unit, reference = call.number(1) * unit,
                level = reference + std::abs(call.number(2)) * unit;
@@ -336,9 +367,7 @@ void BlockRunner::mill_thread(const CycleCall& call) {
                  fmt::format("{} needs RTP, a depth below the reference plane, DIATH, KDIAM and PIT", name));
   const auto feed = cycle_feed(call.number(8), call, "FFR");
   if (!feed) return;
-  double cutter = 0;
-  if (const auto tool = tool_offsets_.find(state_.tool); tool != tool_offsets_.end() && edge_ != 0)
-    cutter = tool->second.effective_radius_mm().value_or(0);
+  const double cutter = cutter_radius_mm(call, false);
   if (cutter == 0)
     report_.warning(call.offset, "radius-unknown",
                     fmt::format("no radius is given for tool {}; {} takes 0", state_.tool, name), name);
@@ -362,19 +391,10 @@ void BlockRunner::mill_thread(const CycleCall& call) {
   // Inside from the centre, outside from beside the thread, both on the positive first axis.
   const double start = outside ? radius + 2 * std::max(cutter, pitch) : 0;
   const double sign = clockwise ? -1 : 1;
-  Vec3 over = place(start, programmed()[axes.normal]);
-  if (programmed()[axes.normal] < rtp)
-    go(
-        CycleStep::Kind::rapid,
-        [&] {
-          Vec3 p = programmed();
-          p[axes.normal] = rtp;
-          return p;
-        }(),
-        0, 0);
-  over[axes.normal] = programmed()[axes.normal];
-  go(CycleStep::Kind::rapid, over, 0, 0);
+  rapid_to_height(std::max(programmed()[axes.normal], rtp));
+  go(CycleStep::Kind::rapid, place(start, programmed()[axes.normal]), 0, 0);
   go(CycleStep::Kind::rapid, place(start, level), 0, 0);
+  place_.fill(AxisPlace::known);
   go_round(place(radius, level), place((start + radius) / 2, level), (outside ? -sign : sign) * kPi, *feed);
   const double turns = (level - bottom) / pitch, sweep = sign * 2 * kPi * turns;
   if (turns > 1000)
@@ -388,8 +408,174 @@ void BlockRunner::mill_thread(const CycleCall& call) {
   const Vec3 direction = (end - place(0, bottom)) / radius;
   Vec3 off = end + direction * out_by, middle = end + direction * (out_by / 2);
   go_round(off, middle, (outside ? -sign : sign) * kPi, *feed);
-  off[axes.normal] = rtp;
-  go(CycleStep::Kind::rapid, off, 0, 0);
+  rapid_to_height(rtp);
+}
+
+/// POCKET3(RTP, RFP, SDIS, DP, LENG, WID, CRAD, PA, PO, STA, MID, FAL, FALD, FFP1, FFD, CDIR, VARI, MIDA, AP1, AP2, AD,
+/// RAD1, DP1, UMODE, FS, ZFS, GMODE, DMODE, AMODE); POCKET4 with a radius in place of LENG, WID and CRAD, without STA
+/// and AP2. DMODE and AMODE: digits of newer controls.
+void BlockRunner::mill_pocket_cycle(const CycleCall& call) {
+  const std::string name = name_of(call);
+  const bool round = name == "POCKET4";
+  const std::size_t mid = round ? 7 : 10, place = round ? 5 : 7, gmode = round ? 22 : 26;
+  const double unit = unit_mm(), cutter = cutter_radius_mm(call, true);
+  if (!begin_milling(call) || cutter <= 0) return;
+  const int vari = call.digit(mid + 6, 1);
+  if (vari > 2 && vari != 4)
+    return error(
+        call.offset, "not-supported",
+        fmt::format("{} with VARI {} is not supported; roughing (1) or finishing (2, 4) was expected", name, vari));
+  PocketCycle pocket;
+  pocket.round = round;
+  const double middle[2] = {call.number(place) * unit, call.number(place + 1) * unit};
+  const PlaneAxes axes = axes_of(plane_);
+  pocket.middle_mm = programmed();
+  pocket.middle_mm[axes.first] = middle[0];
+  pocket.middle_mm[axes.second] = middle[1];
+  const bool diameter = call.digit(gmode + 1, 100) == 1;
+  double whole[2] = {call.number(4) * unit * (round && !diameter ? 2 : 1), 0};
+  whole[1] = round ? whole[0] : call.number(5) * unit;
+  if (!round) {
+    pocket.angle_rad = rad_from_deg(call.number(9));
+    pocket.corner_mm = std::max(0.0, call.number(6) * unit - cutter);
+    // A corner in place of the middle: 2 ++, 3 -+, 4 +-, 5 --.
+    if (const int corner = call.digit(gmode, 1000); corner >= 2 && corner <= 5) {
+      const double x = (corner % 2 == 0 ? 0.5 : -0.5) * std::abs(whole[0]),
+                   y = (corner < 4 ? 0.5 : -0.5) * std::abs(whole[1]);
+      const double c = std::cos(pocket.angle_rad), s = std::sin(pocket.angle_rad);
+      pocket.middle_mm[axes.first] += c * x - s * y;
+      pocket.middle_mm[axes.second] += s * x + c * y;
+    }
+  }
+  for (int i = 0; i < 2; ++i) pocket.half_mm[i] = 0.5 * std::abs(whole[i]) - cutter;
+  pocket.surface_mm = call.number(1) * unit;
+  pocket.clearance_mm = pocket.surface_mm + std::abs(call.number(2)) * unit;
+  pocket.bottom_mm =
+      call.digit(gmode + 2, 1) == 1 ? pocket.surface_mm - std::abs(call.number(3)) * unit : call.number(3) * unit;
+  pocket.side_mm = std::abs(call.number(mid + 1)) * unit;
+  pocket.floor_mm = std::abs(call.number(mid + 2)) * unit;
+  const double whole_depth = pocket.surface_mm - pocket.bottom_mm;
+  pocket.step_mm = call.number(mid) > 0 ? call.number(mid) * unit : whole_depth;
+  pocket.finishing_step_mm = pocket.step_mm;
+  const double mida = call.number(mid + 7);
+  pocket.sideways_mm = !(mida > 0)                      ? 1.6 * cutter
+                       : call.digit(gmode + 2, 10) == 1 ? mida / 100 * 2 * cutter
+                                                        : mida * unit;
+  pocket.roughs = vari <= 1;
+  pocket.finishes = vari != 1;
+  if (!(whole_depth > 0) || pocket.least_mm() - pocket.side_mm < -1e-9)
+    return error(
+        call.offset, "cycle",
+        fmt::format("{} needs a depth below its reference plane, and sides in which the tool of {:.3f} mm and the "
+                    "allowance have room",
+                    name, 2 * cutter));
+  const auto feed = cycle_feed(call.number(mid + 3), call, "FFP1");
+  if (!feed) return;
+  pocket.feed_mm_per_s = pocket.finishing_mm_per_s = *feed;
+  pocket.plunge_mm_per_s =
+      call.number(mid + 4) > 0 ? cycle_feed(call.number(mid + 4), call, "FFD").value_or(*feed) : *feed;
+  // 0: climb cutting, 1: conventional, by the sense of the spindle; 2: G2, 3: G3.
+  const int cdir = call.digit(mid + 5, 1);
+  const bool turns_back = state_.spindle == SpindleDirection::counter_clockwise;
+  pocket.sense = cdir == 3 || (cdir < 2 && (cdir == 0) != turns_back) ? 1 : -1;
+  report_.warning(
+      call.offset, "cycle",
+      fmt::format("the plunge of {} and its ways from ring to ring are taken as straight lines; the control's "
+                  "differ",
+                  name),
+      name + " ways");
+  const PocketMoves moves{[this](const Vec3& end, double speed) {
+                            go(std::isinf(speed) ? CycleStep::Kind::rapid : CycleStep::Kind::feed, end, speed, 0);
+                          },
+                          [this](const Vec3& centre, double sweep, double speed) {
+                            const Vec3 from = programmed();
+                            go_round(centre + rotation_in(plane_, sweep) * (from - centre), centre, sweep, speed);
+                          }};
+  rapid_to_height(std::max(programmed()[axes.normal], call.number(0) * unit));
+  Vec3 over = pocket.middle_mm;
+  over[axes.normal] = programmed()[axes.normal];
+  go(CycleStep::Kind::rapid, over, 0, 0);
+  place_.fill(AxisPlace::known);
+  if (!mill_pocket(pocket, axes, programmed(), moves))
+    return error(call.offset, "cycle",
+                 fmt::format("{} would take more than 100000 rings or depths; larger ones were expected", name));
+  rapid_to_height(call.number(0) * unit);
+}
+
+/// CYCLE61(RTP, Z0, SDIS, Z1, X0, Y0, X1, Y1, infeed, sideways, allowance, F, VARI, LIM, DMODE, AMODE) and CYCLE71(RTP,
+/// RFP, SDIS, DP, PA, PO, LENG, WID, STA, MID, MIDA, FDP, FALD, FFP1, VARI, FDP1): parallel passes across a rectangle.
+void BlockRunner::mill_face(const CycleCall& call) {
+  const std::string name = name_of(call);
+  const bool old = name == "CYCLE71";
+  const double unit = unit_mm(), cutter = cutter_radius_mm(call, true);
+  if (!begin_milling(call) || cutter <= 0) return;
+  const double top = call.number(1) * unit, clear = top + std::abs(call.number(2)) * unit, rtp = call.number(0) * unit;
+  const double bottom = !old && call.digit(15, 1) == 1 ? top - std::abs(call.number(3)) * unit : call.number(3) * unit;
+  const double allowance = call.number(old ? 12 : 10) * unit;
+  double from[2] = {call.number(4) * unit, call.number(5) * unit},
+         way[2] = {call.number(6) * unit, call.number(7) * unit};
+  for (int i = 0; i < 2; ++i)
+    if (!old && call.digit(15, i == 0 ? 1000 : 10000) == 1) way[i] -= from[i];
+  const double angle = old ? rad_from_deg(call.number(8)) : 0;
+  const double given = call.number(old ? 10 : 9);
+  const double sideways = !(given > 0)                      ? 1.6 * cutter
+                          : !old && call.digit(15, 10) == 1 ? given / 100 * 2 * cutter
+                                                            : given * unit;
+  const double step = call.number(old ? 9 : 8) * unit;
+  const int vari = call.digit(old ? 14 : 12, 1), direction = call.digit(old ? 14 : 12, 10);
+  const auto feed = cycle_feed(call.number(old ? 13 : 11), call, "F");
+  if (!feed) return;
+  const bool at_once = vari == 2 || step <= 0;
+  const double low = vari == 2 ? bottom : bottom + allowance;
+  if (way[0] == 0 || way[1] == 0 || bottom > top || sideways > 2 * cutter + 1e-9)
+    return error(
+        call.offset, "cycle",
+        fmt::format("{} needs two sides, a depth below its reference plane and passes no further apart than the "
+                    "tool is wide",
+                    name));
+  const int cuts = at_once ? 1 : std::max(1, static_cast<int>(std::ceil((top - low) / step - 1e-9)));
+  const int along = direction == 2 || direction == 4 ? 1 : 0, across = 1 - along;
+  const int passes = std::max(1, static_cast<int>(std::ceil(std::abs(way[across]) / sideways - 1e-9)));
+  if (static_cast<double>(cuts) * passes > kMaxPecks)
+    return error(call.offset, "cycle", fmt::format("{} would take more than 100000 passes", name));
+  report_.warning(call.offset, "cycle",
+                  fmt::format("the passes of {} go beyond the face by the radius of the tool and the safety clearance; "
+                              "the control's may differ",
+                              name),
+                  name + " ways");
+  const PlaneAxes axes = axes_of(plane_);
+  const double c = std::cos(angle), s = std::sin(angle), beyond = cutter + (clear - top);
+  const auto sign = [](double x) { return x < 0 ? -1.0 : 1.0; };
+  const auto at = [&](double on, double beside, double height) {
+    double uv[2];
+    uv[along] = on;
+    uv[across] = beside;
+    Vec3 p = Vec3::Zero();
+    p[axes.first] = from[0] + c * uv[0] - s * uv[1];
+    p[axes.second] = from[1] + s * uv[0] + c * uv[1];
+    p[axes.normal] = height;
+    return p;
+  };
+  rapid_to_height(std::max(programmed()[axes.normal], rtp));
+  const double begin = -sign(way[along]) * beyond, end = way[along] + sign(way[along]) * beyond;
+  for (int cut = 1; cut <= cuts; ++cut) {
+    const double height = at_once ? low : std::max(top - step * cut, low);
+    for (int pass = 1; pass <= passes; ++pass) {
+      const double beside = way[across] * pass / passes - sign(way[across]) * cutter;
+      const bool back = direction >= 3 && pass % 2 == 0;
+      if (pass == 1 || direction < 3) {
+        rapid_to_height(cut == 1 && pass == 1 ? rtp : clear);
+        go(CycleStep::Kind::rapid, at(begin, beside, programmed()[axes.normal]), 0, 0);
+        go(CycleStep::Kind::rapid, at(begin, beside, height), 0, 0);
+        place_.fill(AxisPlace::known);
+      } else {
+        go(CycleStep::Kind::feed, at(back ? end : begin, beside, height), *feed, 0);
+      }
+      go(CycleStep::Kind::feed, at(back ? begin : end, beside, height), *feed, 0);
+    }
+    rapid_to_height(clear);
+  }
+  rapid_to_height(rtp);
 }
 
 /// HOLES1, HOLES2, CYCLE801, CYCLE802: a rapid to each place.

@@ -57,14 +57,15 @@ void BlockRunner::update_frame() {
 
 void BlockRunner::run_frame_command() {
   const WordRow& row = *request_.frame;
-  const bool additive = row.name.front() == 'A';
   const std::string name(row.name);
+  const bool additive = name.front() == 'A';
   if (radius_.active && radius_.radius_mm != 0) {
     error(request_.frame_offset, "cutter-radius",
           fmt::format("{} under G{}; G40 was expected before", name, radius_.g));
     return;
   }
   const bool any = words_.has_any("XYZ") || words_.has(Extra::rpl);
+  if (!additive) fine_shift_mm_ = Vec3::Zero();
   if (!any && !additive) {
     programmable_ = {};
     return update_frame();
@@ -74,34 +75,39 @@ void BlockRunner::run_frame_command() {
   for (int axis = 0; axis < 3; ++axis) {
     const Slot& slot = words_.of(kAxisLetters[axis]);
     if (!slot.given) continue;
-    switch (row.does) {
-      case Does::trans:
-      case Does::atrans:
-        own.shift_mm[axis] = slot.value * unit_mm();
-        break;
-      case Does::rot:
-      case Does::arot:
-        angles[axis] = rad_from_deg(slot.value);
-        break;
-      case Does::mirror:
-      case Does::amirror:
-        own.linear(axis, axis) = -1;
-        break;
-      default:
-        if (!(slot.value >= 1e-3 && slot.value <= 1e3)) {
-          error(slot.offset, "scaling",
-                fmt::format("{} scales {} by {:g}; 0.001 to 1000 was expected", name, kAxisLetters[axis], slot.value));
-          return;
-        }
-        own.linear(axis, axis) = slot.value;
-        break;
+    if (name.ends_with("TRANS")) {
+      own.shift_mm[axis] = slot.value * unit_mm();
+    } else if (name.ends_with("ROT")) {
+      angles[axis] = rad_from_deg(slot.value);
+    } else if (name.ends_with("MIRROR")) {
+      own.linear(axis, axis) = -1;
+    } else {
+      if (!(slot.value >= 1e-3 && slot.value <= 1e3)) {
+        error(slot.offset, "scaling",
+              fmt::format("{} scales {} by {:g}; 0.001 to 1000 was expected", name, kAxisLetters[axis], slot.value));
+        return;
+      }
+      own.linear(axis, axis) = slot.value;
     }
   }
-  if (row.does == Does::rot || row.does == Does::arot) {
+  if (name.ends_with("ROT")) {
     const Slot& rpl = words_.of(Extra::rpl);
     own.linear = rpl.given ? rotation_in(plane_, rad_from_deg(rpl.value)) : rpy(angles);
   }
   programmable_ = additive ? programmable_.then_inside(own) : own;
+  update_frame();
+}
+
+/// G58: the shift of TRANS, G59: a fine one beside it; of the axes in the block alone.
+void BlockRunner::set_programmable_shift() {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Slot& slot = words_.of(kAxisLetters[axis]);
+    if (!slot.given) continue;
+    double &fine = fine_shift_mm_[axis], &shift = programmable_.shift_mm[axis];
+    const double coarse = request_.shift == 58 ? slot.value * unit_mm() : shift - fine;
+    if (request_.shift == 59) fine = slot.value * unit_mm();
+    shift = coarse + fine;
+  }
   update_frame();
 }
 

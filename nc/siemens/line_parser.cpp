@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -150,7 +152,13 @@ void LineParser::parse_name() {
     out_.items.push_back(item);
     return;
   }
-  if (parse_flow(name, begin)) return;
+  if (parse_flow(name, begin) || parse_macro(name, begin)) return;
+  if (name == "PCALL") {  // the folders of its path are those of the control
+    skip_blanks();
+    for (std::size_t i = at_; i < end_ && !is_blank(text_[i]) && text_[i] != '('; ++i)
+      if (text_[i] == '/') at_ = i + 1;
+    return parse_name();
+  }
   item.row = find_word(name);
   item.name = names_.index(name);
   skip_blanks();
@@ -163,7 +171,7 @@ void LineParser::parse_name() {
     out_.items.push_back(item);
     return;
   }
-  if (name == "PCALL" || name == "ISOCALL")
+  if (name == "ISOCALL")
     while (!at_end()) ++at_;
   if (item.row && !sets) {
     item.kind = item.row->kind == WordKind::command ? ItemKind::command : ItemKind::call;
@@ -416,8 +424,7 @@ bool LineParser::parse_flow(const std::string& name, std::size_t begin) {
     while (!at_end()) ++at_;
     return true;
   }
-  if (name == "DEFINE")
-    fail(begin, "not-supported", "DEFINE (a macro) is not supported; the words that it stands for were expected");
+  if (name == "DEFINE") return define_macro(begin), true;
   if (name == "WHEN" || name == "WHENEVER" || name == "EVERY" || name == "FROM" || name == "DO" || name == "ID" ||
       name == "IDS") {
     skip_blanks();
@@ -426,6 +433,39 @@ bool LineParser::parse_flow(const std::string& name, std::size_t begin) {
     return true;
   }
   return false;
+}
+
+/// DEFINE NAME AS words: what stands behind AS is read where the name stands.
+void LineParser::define_macro(std::size_t begin) {
+  set_flow(FlowKind::external, begin);
+  skip_blanks();
+  const bool named = is_name_start(text_, at_, end_);
+  const std::string name = read_name();
+  skip_blanks();
+  if (!named || read_name() != "AS")
+    fail(begin, "not-supported",
+         "DEFINE without a name of two letters and AS is not supported; the words were expected");
+  names_.macros[name] = {at_, end_};
+  at_ = end_;
+}
+
+/// The words of a macro, none of which can be edited.
+bool LineParser::parse_macro(const std::string& name, std::size_t begin) {
+  const auto macro = names_.macros.find(name);
+  if (macro == names_.macros.end()) return false;
+  if (++depth_ > 20) fail(begin, "macro", fmt::format("the macro {} leads to itself", name));
+  const std::pair behind(at_, end_);
+  const std::size_t first = out_.items.size();
+  std::tie(at_, end_) = macro->second;
+  parse_items();
+  std::tie(at_, end_) = behind;
+  --depth_;
+  for (std::size_t i = first; i < out_.items.size(); ++i) {
+    out_.items[i].offset = static_cast<std::uint32_t>(begin);
+    out_.items[i].length = 0;
+    out_.items[i].constant = false;
+  }
+  return true;
 }
 
 /// The rest of the block acts beside the path. What moves is refused.

@@ -1,9 +1,11 @@
 #pragma once
 // Parses one block of a Sinumerik program that has more than plain words.
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "nc/siemens/tree.h"
 
@@ -27,6 +29,8 @@ class NameTable {
   void declare(char letter) { letters_ += letter; }
   void forget_letters() { letters_.clear(); }
   bool is_declared(char upper_letter) const { return letters_.find(upper_letter) != std::string::npos; }
+  /// DEFINE: where the words begin and end that a name stands for.
+  std::map<std::string, std::pair<std::size_t, std::size_t>> macros;
 
  private:
   Tree& tree_;
@@ -66,6 +70,8 @@ class LineParser {
   bool parse_type(ValueType& type);
   std::vector<std::uint32_t> parse_list(char close);
   void pass_synchronized_action(std::size_t begin);
+  void define_macro(std::size_t begin);
+  bool parse_macro(const std::string& name, std::size_t begin);
   void set_flow(FlowKind kind, std::size_t begin);
   void expect_end();
 

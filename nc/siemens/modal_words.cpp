@@ -3,6 +3,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <initializer_list>
 
 #include <fmt/format.h>
 
@@ -86,14 +87,7 @@ void BlockRunner::set_command(const WordRow& row, std::uint32_t offset) {
       request_.motion_given = true;
       request_.motion_offset = offset;
       return;
-    case Does::trans:
-    case Does::atrans:
-    case Does::rot:
-    case Does::arot:
-    case Does::scale:
-    case Does::ascale:
-    case Does::mirror:
-    case Does::amirror:
+    case Does::frame:
       if (request_.frame)
         error(offset, "modal-group",
               fmt::format("{} and {} in one block; one of them was expected", request_.frame->name, row.name));
@@ -175,6 +169,8 @@ bool BlockRunner::execute(bool& ends_subprogram) {
   if (request_.block_feed) feed_ = internal_feed(*request_.block_feed);
   if (request_.frame) {
     run_frame_command();
+  } else if (request_.shift != 0) {
+    set_programmable_shift();
   } else if (request_.limits) {
   } else if (request_.dwell) {
     dwell();
@@ -203,7 +199,7 @@ int modal_group(int g) {
   if ((g >= 0 && g <= 3) || g == 331 || g == 332) return 1;
   if (g >= 17 && g <= 19) return 6;
   if (g >= 40 && g <= 42) return 7;
-  if ((g >= 54 && g <= 57) || g == 500 || (g >= 505 && g <= 599)) return 8;
+  if ((g >= 54 && g <= 59) || g == 500 || (g >= 505 && g <= 599)) return 8;
   if (g == 70 || g == 71 || g == 700 || g == 710) return 13;
   return g == 90 || g == 91 ? 14 : 0;
 }
@@ -275,7 +271,6 @@ void BlockRunner::read_g_code(const CodeWord& code) {
     std::string_view what, instead;
   };
   constexpr std::array kRefused{Refused{33, 35, "thread cutting", "a tapping cycle"},
-                                Refused{58, 59, "programmable shift", "TRANS or ATRANS"},
                                 Refused{96, 96, "constant cutting speed", "G97 with S"},
                                 Refused{147, 148, "smooth approach and retraction", "G1 to G3"},
                                 Refused{247, 248, "smooth approach and retraction", "G1 to G3"},
@@ -291,84 +286,40 @@ void BlockRunner::read_g_code(const CodeWord& code) {
   if (g >= 810 && g <= 829)
     return report_.warning(code.offset, "no-effect",
                            fmt::format("G{} of the machine's maker is read without effect", g), fmt::format("G{}", g));
-  switch (g) {
-    case 0:
-    case 1:
-    case 2:
-    case 3:
-      return set_motion(static_cast<Motion>(g));
-    case 4:
-      request_.dwell = true;
-      return;
-    case 9:
-      request_.exact_stop = true;
-      return;
-    case 25:
-    case 26:
-      request_.limits = true;
-      return;
-    case 331:
-      return set_motion(Motion::tapping_in);
-    case 332:
-      return set_motion(Motion::tapping_out);
-    case 40:
-      return end_radius();
-    case 41:
-    case 42:
-      return read_radius_code(code);
-    case 53:
-    case 153:
-      request_.machine_frame = true;
-      return;
-    case 601:
-    case 602:
-    case 603:
-      return set_mode_word(fmt::format("G{}", g));
-    case 60:
-    case 64:
-    case 641:
-    case 642:
-    case 643:
-    case 644:
-    case 645:
-    case 646:
-      return set_blending(g);
-    case 63:
-      return set_motion(Motion::linear);
-    case 74:
-    case 75:
-      request_.fixed_point = true;
-      return;
-    case 93:
-      return set_feed_mode(FeedMode::inverse_time);
-    case 94:
-      return set_feed_mode(FeedMode::per_minute);
-    case 95:
-      return set_feed_mode(FeedMode::per_revolution);
-    case 942:
-    case 952:
-      return set_feed_mode(g == 942 ? FeedMode::per_minute : FeedMode::per_revolution);
-    case 110:
-    case 111:
-    case 112:
-      request_.pole = g;
-      return;
-    case 500:
-      return set_work_offset(500);
-    case 43:
-    case 44:
-    case 49:
-    case 80:
-      words_.set('H').given = false;
-      return report_.warning(code.offset, "iso-word",
-                             fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read without "
-                                         "effect (tool lengths come with D)",
-                                         g),
-                             fmt::format("G{}", g));
-    default:
-      break;
+  const auto is = [g](std::initializer_list<int> codes) { return std::ranges::find(codes, g) != codes.end(); };
+  if (g >= 0 && g <= 3) return set_motion(static_cast<Motion>(g));
+  if (is({60, 64, 641, 642, 643, 644, 645, 646})) return set_blending(g);
+  if (is({601, 602, 603})) return set_mode_word(fmt::format("G{}", g));
+  if (is({94, 942})) return set_feed_mode(FeedMode::per_minute);
+  if (is({95, 952})) return set_feed_mode(FeedMode::per_revolution);
+  if (g == 93) return set_feed_mode(FeedMode::inverse_time);
+  if (is({41, 42})) return read_radius_code(code);
+  if (g == 40) return end_radius();
+  if (is({63, 331, 332}))
+    return set_motion(g == 63 ? Motion::linear : g == 331 ? Motion::tapping_in : Motion::tapping_out);
+  request_.dwell |= g == 4;
+  request_.exact_stop |= g == 9;
+  request_.limits |= is({25, 26});
+  request_.machine_frame |= is({53, 153});
+  request_.fixed_point |= is({74, 75});
+  if (is({110, 111, 112})) request_.pole = g;
+  if (is({4, 9, 25, 26, 53, 153, 74, 75, 110, 111, 112})) return;
+  if (is({43, 44, 49, 80})) {
+    words_.set('H').given = false;
+    return report_.warning(code.offset, "iso-word",
+                           fmt::format("G{} is no word of a Sinumerik program outside ISO mode; it is read without "
+                                       "effect (tool lengths come with D)",
+                                       g),
+                           fmt::format("G{}", g));
   }
-  if ((g >= 54 && g <= 57) || (g >= 505 && g <= 599)) return set_work_offset(g);
+  if (is({58, 59})) {
+    // With coordinates a programmable shift, else the work offset that an 828D has under this number.
+    const bool moves = std::ranges::any_of(words_.g, [](const CodeWord& c) { return c.number >= 0 && c.number <= 3; });
+    if (moves || !words_.has_any("XYZ")) return set_work_offset(g);
+    request_.shift = g;
+    return;
+  }
+  if ((g >= 54 && g <= 57) || g == 500 || (g >= 505 && g <= 599)) return set_work_offset(g);
   error(code.offset, "unknown-g",
         g < 0 ? fmt::format("G{:g} is no G function; a whole number was expected", code.value)
               : fmt::format("G{} is not a G function of a Sinumerik program that Camber knows", g),

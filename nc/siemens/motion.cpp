@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -225,7 +227,27 @@ void BlockRunner::dwell() {
   add_move(MoveKind::dwell, position_mm_).dwell_s = seconds;
 }
 
+void BlockRunner::position_axis(char letter, const Slot& slot) {
+  words_.set(letter) = slot;
+  request_.positioned |= 1U << static_cast<unsigned>(letter - 'A');
+  editable_ = false;
+}
+
 void BlockRunner::move() {
+  if (const std::uint32_t positioned = std::exchange(request_.positioned, 0); positioned != 0) {
+    // Alone in the block it is a rapid; beside the path two movements would overlap.
+    for (const char letter : std::string_view("XYZABC"))
+      if (words_.has(letter) && (positioned & 1U << static_cast<unsigned>(letter - 'A')) == 0)
+        return error(
+            words_.of(letter).offset, "not-supported",
+            fmt::format("{} beside POS or POSA, which moves another axis at the same time, is not supported; a "
+                        "block of its own was expected",
+                        letter));
+    const Motion modal = std::exchange(motion_, Motion::rapid);
+    move();
+    motion_ = modal;
+    return;
+  }
   const bool axes = words_.has_any("XYZ") || words_.has(Extra::ap) || words_.has(Extra::rp);
   const bool arc = motion_ == Motion::clockwise || motion_ == Motion::counter_clockwise;
   const bool of_arc =

@@ -185,8 +185,9 @@ class Reader {
     if (item.kind != ItemKind::word || item.index != kNone) return;
     const std::string& name = tree_.names[item.name];
     char letter = name.size() == 1 ? name[0] : '\0';
-    if (item.row && item.row->does == Does::radius) letter = 'R';
-    if (letter == '\0' || (item.row && item.row->does != Does::radius)) return;
+    if (item.row && item.row->name != "CR") return;
+    if (item.row) letter = 'R';
+    if (letter == '\0') return;
     if (letter != 'R' && !is_plain(letter)) return;
     const Node& node = tree_.nodes[item.value];
     std::size_t from = node.offset, to = node.offset + node.length;

@@ -211,8 +211,6 @@ bool Sequencer::run_flow(const Statement& s) {
       }
       return true;
     case FlowKind::while_loop:
-      if (!evaluator_.truth(s.condition) && s.partner != kNone) f.at = s.partner + 1;
-      return true;
     case FlowKind::until:
       if (!evaluator_.truth(s.condition) && s.partner != kNone) f.at = s.partner + 1;
       return true;
@@ -529,25 +527,8 @@ void Sequencer::run_word(const Item& item) {
 /// Words of the language: addresses and commands.
 void Sequencer::run_command_word(const Item& item) {
   const WordRow& row = *item.row;
-  static constexpr std::pair<Does, Extra> kExtras[] = {{Does::radius, Extra::cr},
-                                                       {Does::opening_angle, Extra::ar},
-                                                       {Does::polar_angle, Extra::ap},
-                                                       {Does::polar_radius, Extra::rp},
-                                                       {Does::turns, Extra::turn},
-                                                       {Does::via_i, Extra::i1},
-                                                       {Does::via_j, Extra::j1},
-                                                       {Does::via_k, Extra::k1},
-                                                       {Does::chamfer, Extra::chf},
-                                                       {Does::chamfer_side, Extra::chr},
-                                                       {Does::rounding, Extra::rnd},
-                                                       {Does::line_angle, Extra::ang},
-                                                       {Does::blend_distance, Extra::adis},
-                                                       {Does::plane_angle, Extra::rpl},
-                                                       {Does::direction_a, Extra::a3},
-                                                       {Does::direction_b, Extra::b3},
-                                                       {Does::direction_c, Extra::c3}};
-  for (const auto& [does, extra] : kExtras)
-    if (row.does == does) return set_extra(item, extra);
+  if (row.does == Does::extra)
+    return set_extra(item, static_cast<Extra>(std::ranges::find(kExtraNames, row.name) - kExtraNames.begin()));
   switch (row.does) {
     case Does::modal_rounding:
       return runner_.set_modal_rounding(word_value(item, row.name));
@@ -567,11 +548,8 @@ void Sequencer::run_command_word(const Item& item) {
         report_.error(item.offset, "axis", fmt::format("{}[{}]: X, Y, Z, A, B or C was expected", row.name, axis));
         return;
       }
-      report_.error(
-          item.offset, "not-supported",
-          fmt::format("{}[{}] (an axis beside the path) is not supported; G0 {} was expected", row.name, axis, axis),
-          row.name);
-      return;
+      return runner_.position_axis(axis[0],
+                                   {true, !item.constant, item.dimension, word_value(item, row.name), item.offset});
     }
     case Does::blend_distance_rapid:
       return;

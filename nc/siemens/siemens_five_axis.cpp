@@ -53,8 +53,7 @@ class SiemensFiveAxis : public FiveAxisCodes {
       for (const char letter : {'I', 'J', 'K', 'R'})
         if (const Word* w = edit.find(letter)) take_out(edit, *w);
     take_out_items(edit, [&](const Item& i) {
-      return i.row->does == Does::direction_a || i.row->does == Does::direction_b || i.row->does == Does::direction_c ||
-             (arc && i.row->does == Does::turns);
+      return i.row->name == "A3" || i.row->name == "B3" || i.row->name == "C3" || (arc && i.row->name == "TURN");
     });
   }
 

@@ -20,41 +20,18 @@ enum class Does : std::uint8_t {
   noted,    ///< read without effect, and said: the path or its time depends on it on a real control
   refused,  ///< [not-supported]
   // addresses
-  radius,         // CR
-  opening_angle,  // AR
-  polar_angle,    // AP
-  polar_radius,   // RP
-  turns,          // TURN
-  via_i,
-  via_j,
-  via_k,                 // I1 J1 K1
-  chamfer,               // CHF
-  chamfer_side,          // CHR
-  rounding,              // RND
+  extra,                 // those of Extra
   modal_rounding,        // RNDM
   corner_feed,           // FRC, FRCM
   block_feed,            // FB
-  line_angle,            // ANG
-  blend_distance,        // ADIS
   blend_distance_rapid,  // ADISPOS
   contour_tolerance,     // CTOL
   offset_normal,         // OFFN
-  plane_angle,           // RPL
-  direction_a,
-  direction_b,
-  direction_c,       // A3 B3 C3
-  spindle_position,  // SPOS SPOSA
-  position_axis,     // POS POSA POSP
+  spindle_position,      // SPOS SPOSA
+  position_axis,         // POS POSA POSP
   // commands
   supa,
-  trans,
-  atrans,
-  rot,
-  arot,
-  scale,
-  ascale,
-  mirror,
-  amirror,
+  frame,  // TRANS ...
   cip,
   ct,
   transform_on,   // TRAORI
@@ -67,6 +44,8 @@ enum class Does : std::uint8_t {
   drilling,        // CYCLE81 ...
   pattern,         // HOLES1 ...
   thread_milling,  // CYCLE90
+  pocket,          // POCKET3, POCKET4
+  face,            // CYCLE61, CYCLE71
   modal_call,      // MCALL
   alarm,           // SETAL
   end_subprogram,  // RET

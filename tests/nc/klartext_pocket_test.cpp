@@ -1,4 +1,4 @@
-// Cycles 251 and 252: what the cutter reaches, against the pocket that they describe.
+// Cycles 251 to 253, POCKET3 and POCKET4: what the cutter reaches, against the pocket that they describe.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -19,7 +19,7 @@ constexpr double kStep_mm = 0.5;      ///< between the points of a path
 constexpr double kReached_mm = 0.01;  ///< that points of a path lie apart costs so much
 
 struct PocketCase {
-  bool round = false;
+  bool round = false, slot = false;
   double length = 60, width = 34, corner = 7, angle_deg = 0;
   double side = 0, floor = 0, overlap = 1.2;
   int operation = 0, climb = 1, place = 0;
@@ -29,10 +29,15 @@ std::string text_of(const PocketCase& p) {
   std::string out = fmt::format(
       "BEGIN PGM A MM\nTOOL DEF 1 L+0 R+{}\nTOOL CALL 1 Z S3000\nL X+20 Y+30 Z+50 R0 FMAX M3\nCYCL DEF {} ~\nQ215={} "
       "~\n",
-      kRadius_mm, p.round ? 252 : 251, p.operation);
-  out += p.round ? fmt::format("Q223={} ~\n", p.length)
-                 : fmt::format("Q218={} ~\nQ219={} ~\nQ220={} ~\nQ224={} ~\nQ367={} ~\n", p.length, p.width, p.corner,
-                               p.angle_deg, p.place);
+      kRadius_mm,
+      p.round  ? 252
+      : p.slot ? 253
+               : 251,
+      p.operation);
+  out += p.round  ? fmt::format("Q223={} ~\n", p.length)
+         : p.slot ? fmt::format("Q218={} ~\nQ219={} ~\nQ374={} ~\nQ367={} ~\n", p.length, p.width, p.angle_deg, p.place)
+                  : fmt::format("Q218={} ~\nQ219={} ~\nQ220={} ~\nQ224={} ~\nQ367={} ~\n", p.length, p.width, p.corner,
+                                p.angle_deg, p.place);
   return out + fmt::format(
                    "Q368={} ~\nQ207=500 ~\nQ351={} ~\nQ201=-10 ~\nQ202=4 ~\nQ369={} ~\nQ206=150 ~\nQ338=5 ~\nQ200=2 "
                    "~\nQ203=0 ~\nQ204=20 ~\nQ370={} ~\nQ366=0 ~\nQ385=400\nCYCL CALL\nM30\nEND PGM A MM\n",
@@ -48,7 +53,11 @@ Cut cut_of(const PocketCase& p, const Interpretation& moves) {
   Cut out;
   const double c = std::cos(rad_from_deg(p.angle_deg)), s = std::sin(rad_from_deg(p.angle_deg));
   Vec3 middle(20, 30, 0);
-  if (p.place == 1) middle += Vec3(c * p.length / 2 - s * p.width / 2, s * p.length / 2 + c * p.width / 2, 0);
+  if (p.slot && p.place != 0) {  // left end, centres of the arcs, right end
+    const double along = (p.place <= 2 ? 0.5 : -0.5) * (p.length - (p.place == 2 || p.place == 3 ? p.width : 0));
+    middle += Vec3(c * along, s * along, 0);
+  } else if (p.place == 1)
+    middle += Vec3(c * p.length / 2 - s * p.width / 2, s * p.length / 2 + c * p.width / 2, 0);
   for (const Move& m : moves.moves) {
     if (m.kind != MoveKind::linear && m.kind != MoveKind::arc) continue;
     if (m.arc != Move::kNoArc) out.turned_rad += moves.arcs[m.arc].sweep_rad;
@@ -76,6 +85,12 @@ std::vector<PocketCase> cases() {
           {.corner = 0, .overlap = 1, .climb = -1},
           {.width = 60, .side = 0.5, .floor = 0.5, .operation = 1},
           {.side = 0.5, .floor = 0.5, .operation = 2},
+          {.slot = true, .width = 20, .corner = 10},
+          {.slot = true, .width = 8, .corner = 4, .angle_deg = 90},
+          {.slot = true, .width = 12, .corner = 6, .angle_deg = -20, .side = 0.2, .floor = 0.1, .place = 1},
+          {.slot = true, .width = 20, .corner = 10, .place = 2},
+          {.slot = true, .width = 20, .corner = 10, .place = 3},
+          {.slot = true, .width = 20, .corner = 10, .place = 4},
           {.round = true},
           {.round = true, .length = 21, .side = 0.3, .floor = 0.2, .overlap = 0.7, .climb = -1},
           {.round = true, .length = 8.5}};
@@ -112,9 +127,43 @@ TEST(KlartextPocket, TheCutterKeepsWithinTheWallsAndReachesAllOfTheFloor) {
       }
     EXPECT_GT(all, 20u);
     EXPECT_EQ(left, 0u);
-    EXPECT_EQ(cut.turned_rad > 0, p.climb > 0);
+    EXPECT_EQ(cut.turned_rad > 0,
+              p.climb > 0 && !(p.slot && p.width <= 2 * kRadius_mm));  // as wide as the cutter: no arc
     EXPECT_NEAR(r.moves.moves.back().end_mm.z(), 20, 1e-9);
   }
+}
+
+/// The feed moves, as text.
+std::string feeds_of(const Read& r) {
+  std::string out;
+  for (const Move& m : r.moves.moves)
+    if (m.kind == MoveKind::linear || m.kind == MoveKind::arc)
+      out += fmt::format("{:.4f} {:.4f} {:.4f} {:.3f} F{:.3f}\n", m.end_mm.x() + 0.0, m.end_mm.y() + 0.0, m.end_mm.z(),
+                         m.arc == Move::kNoArc ? 0 : r.moves.arcs[m.arc].sweep_rad, m.feed_mm_per_s);
+  return out;
+}
+
+TEST(KlartextPocket, SinumerikPocketsCutTheSame) {
+  InterpreterOptions options = units();
+  set_cutter_radius(options.tool_offsets, 1, kRadius_mm);
+  const auto sinumerik = [&](const std::string& cycle) {
+    const Read r = read_text("G710 G17 G90\nT1 M6\nS3000 M3\nG0 X20 Y30 Z50\n" + cycle + "\nM30\n", options, "p.mpf");
+    EXPECT_FALSE(r.diagnostics.has_errors()) << r.messages.front();
+    return r;
+  };
+  const std::string rough = feeds_of(read_clean(text_of({.side = 0.5, .floor = 0.5, .operation = 1})));
+  EXPECT_EQ(feeds_of(sinumerik("POCKET3(20,0,2,-10,60,34,7,20,30,0,4,0.5,0.5,500,150,0,11,4.8)")), rough);
+  // Depth, sideways infeed in percent of the cutter, a corner: as newer controls write them.
+  EXPECT_EQ(feeds_of(sinumerik("POCKET3(20,0,2,10,60,34,7,-10,13,0,4,0.5,0.5,500,150,0,1,60,,,,,,0,1,2,2100,1,11)")),
+            rough);
+  const std::string round =
+      feeds_of(read_clean(text_of({.round = true, .length = 40, .overlap = 1, .operation = 1, .climb = -1})));
+  EXPECT_EQ(feeds_of(sinumerik("POCKET4(20,0,2,-10,20,20,30,4,0,0,500,150,1,21,4)")), round);
+  EXPECT_EQ(feeds_of(sinumerik("POCKET4(20,0,2,10,40,20,30,4,0,0,500,150,2,21,50,9,15,6,1,0,1,2,10100,111,111)")),
+            round);
+  const Read done = sinumerik("POCKET4(20,0,2,-10,20,20,30,4,0.1,0.1,500,150,0,2,4)");
+  EXPECT_NEAR(done.moves.moves.back().end_mm.z(), 20, 1e-9);
+  EXPECT_EQ(done.messages.size(), 1u);
 }
 
 TEST(KlartextPocket, CutsNoDeeperThanQ202AtOnce) {

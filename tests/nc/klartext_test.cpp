@@ -1,4 +1,6 @@
 // Heidenhain Klartext, word by word.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/units.h"
@@ -531,8 +533,8 @@ TEST(Klartext, WrongProgramsByTheirMessages) {
             "p.h:4:3: error: FL (free contour programming) is not supported; L, C and CR blocks with end points were "
             "expected "
             "[not-supported]");
-  EXPECT_EQ(one("CYCL DEF 253 SLOT MILLING"),
-            "p.h:4:3: error: CYCL DEF 253 (a slot or stud) is not supported; the finished path was expected "
+  EXPECT_EQ(one("CYCL DEF 254 CIRCULAR SLOT"),
+            "p.h:4:3: error: CYCL DEF 254 (a slot or stud) is not supported; the finished path was expected "
             "[not-supported]");
   EXPECT_EQ(one("C X+5 DR+"), "p.h:4:3: error: C without a circle centre; CC was expected before [pole]");
   EXPECT_EQ(one("CR X+10 Y+0 R+3 DR+"),
@@ -729,9 +731,88 @@ TEST(Klartext, FeedsPerToothAndPerTurn) {
                      "control; 2 are assumed [teeth-unknown]"});
 }
 
+TEST(Klartext, FeedsOfCyclesMayBeWords) {
+  const auto down_and_out = [](const std::string& in, const std::string& out) {
+    const Read r =
+        read_lines(with_start("CYCL DEF 201 REAMING ~\nQ200=2 ~\nQ201=-5 ;DEPTH ~\nQ206=" + in +
+                              " ;IN ~\nQ211=+0 ~\nQ208=" + out + " ;OUT ~\nQ203=+0 ~\nQ204=+5\nCYCL CALL M8\n"));
+    EXPECT_FALSE(r.diagnostics.has_errors()) << in << r.messages.front();
+    std::string feeds;
+    for (const Move& m : r.moves.moves)
+      if (m.start_mm.z() == -5 || m.end_mm.z() == -5)
+        feeds +=
+            m.kind == MoveKind::rapid ? " rapid" : fmt::format(" {:.6g}", mm_per_min_from_mm_per_s(m.feed_mm_per_s));
+    return feeds;
+  };
+  EXPECT_EQ(down_and_out("+150", " MAX"), " 150 rapid");
+  EXPECT_EQ(down_and_out(" AUTO", "+99"), " 600 99");
+  EXPECT_EQ(down_and_out("FAUTO", "FMAX"), " 600 rapid");
+  EXPECT_EQ(down_and_out("FU0.2", "FZ0.3"), " 200 600");
+  EXPECT_EQ(
+      said("CYCL DEF 200 ~\nQ200= LOW ~\nQ201=-5\n"),
+      Messages{"p.h:5:7: error: LOW is no function of a formula; SQ, SQRT, SIN, COS, TAN, ASIN, ACOS, ATAN, LN, LOG, "
+               "EXP, NEG, ABS, INT, FRAC or SGN was expected [expression]"});
+}
+
+TEST(Klartext, QuestionsThatWereNotAnsweredLeaveWhatWasBefore) {
+  EXPECT_EQ(path("L X+5 R F M\nL Y+5 R0 F M8\nL Z-1 R F MAX M\nR0 F MAX\n"), "5 0 0; 5 5 0; 5 5 -1");
+  const Read r =
+      read_lines(with_start("L X+5 R F300 M\nL Y+5 R F M\nF M\nCYCL DEF 200 ~\nQ200=2 ~\nQ201=-5 ~\nQ206=150 "
+                            "~\nQ202=5 ~\nQ203=0\nR0 F MAX M99\nCYCL CALL F M\n"));
+  EXPECT_EQ(r.messages, Messages{});
+  EXPECT_NEAR(mm_per_min_from_mm_per_s(r.moves.moves[2].feed_mm_per_s), 300, 1e-9);
+  EXPECT_EQ(std::ranges::count_if(r.moves.moves, [](const Move& m) { return m.end_mm.z() == -5; }), 2);
+  EXPECT_EQ(said("L X+5 FAMX\n"), Messages{"p.h:4:7: error: F has no number; a number or a Q parameter was expected "
+                                           "[no-number]"});
+  EXPECT_EQ(said("CR X+5 Y+5 R DR+\n"), (Messages{"p.h:4:12: error: R has no number; a number or a Q parameter was "
+                                                  "expected [no-number]",
+                                                  "p.h:4:1: error: CR without a radius; R was expected [arc]"}));
+}
+
+TEST(Klartext, FormsOfOlderControlsAndPosts) {
+  // REP without a number is a call.
+  EXPECT_EQ(path("CALL LBL 1 REP\nL Y+9\nM30\nLBL 1\nL IX+5\nLBL 0\n"), "5 0 0; 5 9 0");
+  EXPECT_EQ(path("CYCL DEF9 .0 DWELL\nCYCL DEF9.1 DWELL2\nL X+1\n"), "0 0 0; 1 0 0");
+  const Read inch = read_text("0010 BEGIN PGM 100 IN\n0020 L X1. Y0.0 Z.5 F MAX\n0030 END PGM 100 IN\n", {}, "p.h");
+  EXPECT_EQ(inch.messages, Messages{});
+  expect_near_mm(inch.moves.moves.back().end_mm, {25.4, 0, 12.7});
+  EXPECT_EQ(said("CALL LBL QS5\n"),
+            Messages{"p.h:4:10: error: QS5 has no text here; a name was expected before [undefined-parameter]"});
+}
+
+TEST(Klartext, PlacesOfAPatternMayBeStepsFromTheOneBefore) {
+  const auto places = [](const std::string& pattern) {
+    const Read r = read_lines(with_start("PATTERN DEF " + pattern +
+                                         "\nCYCL DEF 200 ~\nQ200=2 ~\nQ201=-5 ~\nQ206=150 ~\nQ202=5\n"
+                                         "CYCL CALL PAT\n"));
+    if (!r.messages.empty()) return r.messages.front();
+    std::string out;
+    for (const Move& m : r.moves.moves)
+      if (m.end_mm.z() == -5) out += fmt::format("{:g} {:g};", m.end_mm.x(), m.end_mm.y());
+    return out;
+  };
+  EXPECT_EQ(places("POS1( X+25 Y+33.5 Z+0 ) ~\nPOS2( X+15 IY+6.5 Z+0 ) ~\nPOS3( IX-5 IY-10 Z+0 )"),
+            "25 33.5;15 40;10 30;");
+  EXPECT_EQ(places("POS1( IX+25 Y+1 Z+0 )"),
+            "p.h:4:19: error: IX in the first place of PATTERN DEF; X and Y were expected [cycle]");
+  EXPECT_EQ(places("POS1( X+25 W+1 )"), "p.h:4:24: error: W+1 in PATTERN DEF; X, Y or Z was expected [cycle]");
+}
+
+TEST(Klartext, TheControlKnowsTheToolThatIsGiven) {
+  const std::string lines =
+      "TOOL DEF 7 L+20 R+4\nFN 0: Q11 = +7\nTOOL CALL Q11 Z S1000\n"
+      "FN 18: SYSREAD Q1 = ID50 NR2 IDXQ11\nFN 18: SYSREAD Q2 = ID50 NR1 IDX7\n"
+      "FN 18: SYSREAD Q3 = ID20 NR1\nL X+Q1 Y+Q2 Z+Q3 FMAX\n";
+  EXPECT_EQ(path(lines), "4 20 7");
+  EXPECT_EQ(
+      said("FN 18: SYSREAD Q1 = ID50 NR2 IDX3\nL X+Q1\n"),
+      Messages{"p.h:5:3: error: this depends on a parameter whose value is not known: Q1 is read from the control "
+               "(FN 18) in line 4 [unknown-parameter]"});
+}
+
 TEST(Klartext, CallsOfARefusedCycleAreNotASecondError) {
-  EXPECT_EQ(said("CYCL DEF 253 SLOT Q215=0\nL X+5 FMAX M99\n"),
-            Messages{"p.h:4:1: error: CYCL DEF 253 (a slot or stud) is not supported; the finished path was "
+  EXPECT_EQ(said("CYCL DEF 254 SLOT Q215=0\nL X+5 FMAX M99\n"),
+            Messages{"p.h:4:1: error: CYCL DEF 254 (a slot or stud) is not supported; the finished path was "
                      "expected [not-supported]"});
   EXPECT_EQ(said("CYCL DEF 392 NAME Q1=0\nL X+5 FMAX M99\n"),
             Messages{"p.h:4:1: warning: CYCL DEF 392 is a cycle of the machine's maker; what it does is not known, and "

@@ -1,4 +1,5 @@
 // Words, expressions, flow control, cycles and messages of Sinumerik programs.
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -153,6 +154,103 @@ TEST(Siemens, FramesReplaceAddAndReset) {
   expect_near_mm(ends[3], {-1, 2, 0});
   expect_near_mm(ends[4], {0, 1, 0});
   expect_near_mm(ends[5], {1, 0, 0});
+}
+
+TEST(Siemens, ShiftsOfSingleAxes) {
+  const Read r = read_siemens(
+      "G710\nT1 M6\nTRANS X5 Y5\nG58 X10\nG0 X0 Y0 Z0\nG59 X1 Y2\nG0 X0 Y0 Z0\nG58 Y0\nG0 X0 Y0 Z0\nATRANS X1\nG0 X0 "
+      "Y0 "
+      "Z0\nTRANS\nG0 X0 Y0 Z0\nM30\n");
+  EXPECT_EQ(r.messages, Messages{});
+  const Vec3 expected[] = {{10, 5, 0}, {11, 7, 0}, {11, 2, 0}, {12, 2, 0}, {0, 0, 0}};
+  ASSERT_EQ(r.moves.moves.size(), std::size(expected));
+  for (std::size_t i = 0; i < std::size(expected); ++i) expect_near_mm(r.moves.moves[i].end_mm, expected[i]);
+  // Without coordinates, or with a move, a work offset.
+  const Read offset = read_siemens("G710\nT1 M6\nG59\nG58 G0 X3 Y0 Z0\nM30\n");
+  EXPECT_EQ(offset.messages, Messages{});
+  EXPECT_EQ(offset.moves.states.back().work_offset, 58);
+  expect_near_mm(last(offset), {3, 0, 0});
+}
+
+TEST(Siemens, PositioningAxesAreRapidsOfTheirOwn) {
+  const Read r = read_siemens("G710\nT1 M6\nG1 X1 Y0 Z0 F100\nPOS[Z]=20 FA[Z]=900\nPOSA[X]=IC(4) POS[Y]=2\nX9\nM30\n");
+  EXPECT_FALSE(r.diagnostics.has_errors()) << r.messages.front();
+  ASSERT_EQ(r.moves.moves.size(), 4u);
+  EXPECT_EQ(r.moves.moves[1].kind, MoveKind::rapid);
+  EXPECT_FALSE(r.moves.moves[1].editable);
+  expect_near_mm(r.moves.moves[1].end_mm, {1, 0, 20});
+  expect_near_mm(r.moves.moves[2].end_mm, {5, 2, 20});
+  EXPECT_EQ(r.moves.moves[3].kind, MoveKind::linear);
+  EXPECT_EQ(
+      read_siemens("G710\nT1 M6\nG0 X0 Y0 Z0\nG0 X5 POS[Z]=3\n").messages,
+      Messages{"p.mpf:4:4: error: X beside POS or POSA, which moves another axis at the same time, is not supported; "
+               "a block of its own was expected [not-supported]"});
+}
+
+TEST(Siemens, MacrosStandForTheirWords) {
+  const Read r = read_siemens(
+      "G710\nDEFINE UP AS G0 Z50 ; away\nDEFINE HOME_ALL AS UP X=R1*2\nDEFINE FEED_IN AS F=500\nT1 M6\nG0 X0 Y0 "
+      "Z0\nFEED_IN\nN5 "
+      "G1 X5\nN6 UP Y3\nR1=4\nHOME_ALL\nM30\n");
+  EXPECT_EQ(r.messages, Messages{});
+  ASSERT_EQ(r.moves.moves.size(), 4u);
+  EXPECT_NEAR(mm_per_min_from_mm_per_s(r.moves.moves[1].feed_mm_per_s), 500, 1e-9);
+  expect_near_mm(r.moves.moves[2].end_mm, {5, 3, 50});
+  EXPECT_EQ(r.moves.moves[2].kind, MoveKind::rapid);
+  EXPECT_FALSE(r.moves.moves[2].editable);
+  expect_near_mm(r.moves.moves[3].end_mm, {8, 3, 50});
+  EXPECT_EQ(read_siemens("DEFINE ROUND AS ROUND2\nDEFINE ROUND2 AS ROUND\nROUND\n").messages,
+            Messages{"p.mpf:2:18: error: the macro ROUND leads to itself [macro]"});
+}
+
+TEST(Siemens, SubprogramsByTheirPath) {
+  const Read r = read_siemens(
+      "%_N_A_MPF\nG710\nT1 M6\nG0 X0 Y0 Z0\nPCALL /_N_WKS_DIR/_N_A_WPD/SUB(3)\nPCALL SUB(4)\nM30\n%_N_SUB_SPF\nPROC "
+      "SUB(REAL TO)\nG0 X=TO\nRET\n");
+  EXPECT_EQ(r.messages, Messages{});
+  ASSERT_EQ(r.moves.moves.size(), 3u);
+  EXPECT_EQ(r.moves.moves[1].end_mm.x(), 3);
+  EXPECT_EQ(r.moves.moves[2].end_mm.x(), 4);
+}
+
+/// Every point of the face lies under a pass of its lowest cut.
+void expect_faced(const std::string& cycle, const Vec2& low, const Vec2& high, const std::vector<double>& heights) {
+  SCOPED_TRACE(cycle);
+  constexpr double kRadius_mm = 10;
+  InterpreterOptions options{.inch = false};
+  for (int tool = 0; tool < 3; ++tool) options.tool_offsets[tool].radius_mm = kRadius_mm;
+  const Read r = read_siemens("G710\nT1 M6\nS1000 M3\n" + cycle + "\nM30\n", options);
+  ASSERT_FALSE(r.diagnostics.has_errors()) << r.messages.front();
+  std::vector<double> found;
+  std::vector<const Move*> passes;
+  for (const Move& m : r.moves.moves) {
+    if (m.kind != MoveKind::linear) continue;
+    EXPECT_EQ(m.start_mm.z(), m.end_mm.z());
+    if (found.empty() || std::abs(found.back() - m.end_mm.z()) > 1e-9) found.push_back(m.end_mm.z());
+    if (std::abs(m.end_mm.z() - heights.back()) < 1e-9) passes.push_back(&m);
+  }
+  ASSERT_EQ(found.size(), heights.size());
+  for (std::size_t i = 0; i < heights.size(); ++i) EXPECT_NEAR(found[i], heights[i], 1e-9);
+  for (double x = low.x(); x <= high.x(); x += 2.5)
+    for (double y = low.y(); y <= high.y(); y += 2.5)
+      EXPECT_TRUE(std::ranges::any_of(passes,
+                                      [&](const Move* m) {
+                                        const Vec2 from = m->start_mm.head<2>(), way = Vec2(m->end_mm.head<2>()) - from,
+                                                   at(x, y);
+                                        const double t = std::clamp((at - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+                                        return (from + t * way - at).norm() <= kRadius_mm + 1e-9;
+                                      }))
+          << x << " " << y;
+  EXPECT_NEAR(r.moves.moves.back().end_mm.z(), 30, 1e-9);
+}
+
+TEST(Siemens, FacesAreCutWhole) {
+  const Vec2 low(5, -10), high(85, 40);
+  expect_faced("CYCLE61(30,2,1,-1,5,-10,80,50,1.5,15,0.2,900,31,0)", low, high, {0.5, -0.8});
+  expect_faced("CYCLE61(30,2,1,3,5,-10,85,40,0,75,0,900,11,0,1,11011)", low, high, {-1});
+  expect_faced("CYCLE61(30,2,1,-1,5,-10,80,50,1.5,20,0.2,900,42,0)", low, high, {-1});
+  expect_faced("CYCLE71(30,2,1,-1,5,-10,80,50,0,2,15,5,0,900,21,5)", low, high, {0, -1});
+  expect_faced("CYCLE71(30,2,1,-1,85,40,-80,-50,0,3,0,5,0.5,900,31,5)", low, high, {-0.5});
 }
 
 TEST(Siemens, FrameVariables) {
@@ -333,9 +431,13 @@ TEST(Siemens, WrongProgramsGetAMessageAtTheLine) {
             (Messages{"p.mpf:2:1: error: the radius of the arc is 10.0000 mm at its start and 30.0000 mm at its end; a "
                       "difference below 0.05 mm was expected (with the signs of I, J, K turned "
                       "over it would fit: they lead from the start to the centre) [arc-radius]"}));
-  EXPECT_EQ(said("G0 X0 Y0 Z0\nPOCKET3(5,0,1)\n"),
-            (Messages{"p.mpf:2:1: error: POCKET3 (rectangular pocket) is not supported; what can stand in its place: "
+  EXPECT_EQ(said("G0 X0 Y0 Z0\nSLOT1(5,0,1)\n"),
+            (Messages{"p.mpf:2:1: error: SLOT1 (slots and long holes) is not supported; what can stand in its place: "
                       "the moves themselves, G0 to G3, from the CAM system [not-supported]"}));
+  EXPECT_EQ(
+      said("G710 T1 D1\nM6\nG0 X0 Y0 Z0\nPOCKET3(5,0,1)\n"),
+      (Messages{"p.mpf:4:1: error: POCKET3 needs the radius of tool 1, which nothing gives; the diameter of the cutter "
+                "was expected in the job [radius-unknown]"}));
   EXPECT_EQ(said("GOTOF WEITER\n"),
             (Messages{"p.mpf:1:1: error: no label or block number WEITER in this program [jump]"}));
   EXPECT_EQ(said("IF R1==1\nG0 X1\n"), (Messages{"p.mpf:1:1: error: IF has no end; ENDIF was expected [statement]"}));
@@ -462,8 +564,10 @@ TEST(Siemens, EveryWordStandsInThePage) {
   std::ifstream in(CAMBER_SOURCE_DIR "/docs/reference/siemens-words.md");
   std::set<std::string> documented, known;
   for (std::string line; std::getline(in, line);)
-    if (line.starts_with("| ") && !line.starts_with("| word "))
-      documented.insert(line.substr(2, line.find(" |", 2) - 2));
+    if (line.starts_with("| ") && !line.starts_with("| word ")) {
+      std::istringstream words(line.substr(2, line.find(" |", 2) - 2));
+      for (std::string word; words >> word;) documented.insert(word);
+    }
   for (const siemens::WordRow& row : siemens::word_rows()) known.insert(std::string(row.name));
   EXPECT_EQ(documented, known);
 }
