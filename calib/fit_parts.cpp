@@ -39,6 +39,7 @@ constexpr double kWorth = 2;             // values that this is worth beside tho
 constexpr double kLeastNoise_mm = 0.0002;
 constexpr double kHuber = 2.5;                // standard deviations: normal noise stays least squares
 constexpr double kBoundedVariance = 0.97756;  // of a standard normal variable bounded to +- kHuber
+constexpr double kRank = 1e-6;                // columns of unit length are a combination of others within this
 constexpr double kAtRest = 0.05;              // of a standard error
 constexpr double kAlike = 0.9;                // cosine between two columns that cannot be told apart
 
@@ -283,8 +284,8 @@ class Fit {
     VectorXd out = VectorXd::Constant(a.cols(), INFINITY);
     if ((scale.array() <= 0).any() || a.rows() < a.cols()) return out;
     const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(unit);
-    if (qr.rank() < a.cols()) return out;
+    Eigen::ColPivHouseholderQR<MatrixXd> qr;
+    if (qr.setThreshold(kRank).compute(unit).rank() < a.cols()) return out;
     const MatrixXd covariance = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
     return sigma_mm * covariance.diagonal().cwiseMax(0).cwiseSqrt().cwiseQuotient(scale);
   }
