@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
@@ -26,17 +27,19 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using machine::Job;
 
-constexpr double kStep = 0.2;        // of a logarithm, for slopes: large against the noise of a grid
-constexpr double kLeastStep = 0.05;  // of a logarithm, that corrects slopes: less is the noise of a grid
-constexpr double kNear = 0.1;        // of a logarithm, from where slopes were found
+constexpr double kStep = 0.2;        // of a scale, for slopes: large against the noise of a grid
+constexpr double kLeastStep = 0.05;  // of a scale, that corrects slopes: less is the noise of a grid
+constexpr double kNear = 0.1;        // of a scale, from where slopes were found
 constexpr int kSlopeRounds = 2;
-constexpr double kLongest = 0.7;         // of a logarithm, a round
-constexpr double kDetermined = 0.5;      // greatest standard error of a logarithm
+constexpr double kRise = 3, kFall = 0.8;  // of a scale, a round
+constexpr double kDetermined = 0.5;       // greatest standard error of a scale, of its start or of its value
 constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day
 constexpr double kNoise_mm = 0.002;      // of a measured size, before anything is known of it
+constexpr double kWorth = 2;             // values that this is worth beside those of the residuals
 constexpr double kLeastNoise_mm = 0.0002;
 constexpr double kHuber = 2.5;                // standard deviations: normal noise stays least squares
 constexpr double kBoundedVariance = 0.97756;  // of a standard normal variable bounded to +- kHuber
+constexpr double kRank = 1e-6;                // columns of unit length are a combination of others within this
 constexpr double kAtRest = 0.05;              // of a standard error
 constexpr double kAlike = 0.9;                // cosine between two columns that cannot be told apart
 
@@ -61,17 +64,19 @@ class LinearRow final : public ceres::CostFunction {
 struct Solution {
   VectorXd x;
   bool converged = false;
+  double noise_mm = kNoise_mm;
 };
 
-Solution solve_linear(const MatrixXd& a, const VectorXd& b, double sigma, const VectorXd& longest) {
+Solution solve_linear(const MatrixXd& a, const VectorXd& b, double sigma, const VectorXd& lowest,
+                      const VectorXd& highest) {
   Solution out{VectorXd::Zero(a.cols())};
   ceres::Problem problem;
   for (Eigen::Index i = 0; i < a.rows(); ++i)
     problem.AddResidualBlock(new LinearRow(a.row(i).transpose() / sigma, b[i] / sigma), new ceres::HuberLoss(kHuber),
                              out.x.data());
   for (int k = 0; k < a.cols(); ++k) {
-    problem.SetParameterLowerBound(out.x.data(), k, -longest[k]);
-    problem.SetParameterUpperBound(out.x.data(), k, longest[k]);
+    problem.SetParameterLowerBound(out.x.data(), k, lowest[k]);
+    problem.SetParameterUpperBound(out.x.data(), k, highest[k]);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -87,27 +92,6 @@ Solution solve_linear(const MatrixXd& a, const VectorXd& b, double sigma, const 
 using Sizes = std::vector<std::optional<PredictedSize>>;
 
 constexpr double kNoBending_mm = 0.0001;
-
-/// Sizes change about as exp(p x): lag with the gain's inverse square, bending with the force and the root's
-/// compliance.
-double exponent_of(UnknownKind kind) {
-  switch (kind) {
-    case UnknownKind::gain:
-      return -2;
-    case UnknownKind::root:
-    case UnknownKind::root_rotation:
-      return -1;
-    default:
-      return 1;
-  }
-}
-
-/// Slope at x of a size that changes by `change` over the step.
-double slope_from(double change, UnknownKind kind) {
-  if (kind == UnknownKind::gain_ratio) return change / kStep;  // half a step to either side
-  const double p = exponent_of(kind);
-  return p * change / std::expm1(p * kStep);
-}
 
 bool of_motion(UnknownKind kind) { return kind == UnknownKind::gain || kind == UnknownKind::gain_ratio; }
 
@@ -133,14 +117,14 @@ class Fit {
       return finish();
     }
     find_slopes();
-    choose(kNoise_mm);
+    choose();
     do {
       iterate();
       for (int k = 0; k < kSlopeRounds && far_from_slopes(); ++k) {  // they were those of another place
         find_slopes();
         iterate();
       }
-    } while (drop_undetermined());
+    } while (drop_undetermined() || take_refused());
     return finish();
   }
 
@@ -195,6 +179,11 @@ class Fit {
     }
   }
 
+  /// What a step of an unknown is compared with.
+  double magnitude(std::size_t k, const VectorXd& x) const {
+    return unknowns_[k].kind == UnknownKind::gain_ratio ? 1 : 1 + x[static_cast<Eigen::Index>(k)];
+  }
+
   bool is_fitted_job(std::size_t j) const {
     return std::ranges::any_of(fitted_, [&](std::size_t i) { return rows_[i].job == j; });
   }
@@ -203,7 +192,8 @@ class Fit {
   bool far_from_slopes() const {
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
       if (!unknowns_[k].adds() &&
-          std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) > kNear)
+          std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) >
+              kNear * magnitude(k, slopes_at_))
         return true;
     return false;
   }
@@ -217,10 +207,7 @@ class Fit {
       slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
       if (!is_fitted_job(j)) continue;
       find_slopes_of(j, true);
-      if (bends(sizes_[j]))
-        find_slopes_of(j, false);
-      else
-        take_bending_as_slope(j);
+      if (bends(sizes_[j])) find_slopes_of(j, false);
     }
   }
 
@@ -231,27 +218,18 @@ class Fit {
       if (unknowns_[k].adds() || !unknowns_[k].of_job[j] || of_motion(unknowns_[k].kind) != motion) continue;
       if (!here) here = predict_coarsely(j, x_, motion);
       const auto column = static_cast<Eigen::Index>(k);
-      // One axis lags more, the other less: the change has no sign that a power could follow, so it is taken centrally.
+      // The ratio of two gains may be at either of its bounds: its slope is taken centrally.
       const bool central = unknowns_[k].kind == UnknownKind::gain_ratio;
-      VectorXd x = x_;
-      x[column] += central ? kStep / 2 : kStep;
-      const Sizes there = predict_coarsely(j, x, motion);
-      x[column] -= kStep;
-      const Sizes back = central ? predict_coarsely(j, x, motion) : *here;
+      VectorXd above = x_, below = x_;
+      above[column] = std::min(x_[column] + kStep * magnitude(k, x_), unknowns_[k].highest());
+      if (central) below[column] = std::max(x_[column] - kStep, unknowns_[k].lowest());
+      const Sizes there = predict_coarsely(j, above, motion);
+      const Sizes back = central ? predict_coarsely(j, below, motion) : *here;
       for (std::size_t f = 0; f < there.size(); ++f)
         if (there[f] && back[f])
           slope_[j](static_cast<Eigen::Index>(f), column) =
-              slope_from(there[f]->size_mm - back[f]->size_mm, unknowns_[k].kind);
+              (there[f]->size_mm - back[f]->size_mm) / (above[column] - below[column]);
     }
-  }
-
-  /// Bending goes with the force.
-  void take_bending_as_slope(std::size_t j) {
-    for (std::size_t k = 0; k < unknowns_.size(); ++k)
-      if (unknowns_[k].kind == UnknownKind::force)
-        for (std::size_t f = 0; f < sizes_[j].size(); ++f)
-          if (sizes_[j][f])
-            slope_[j](static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(k)) = sizes_[j][f]->deflection_mm;
   }
 
   double slope_of(const PartsRow& row, std::size_t k) const {
@@ -293,7 +271,11 @@ class Fit {
     return out;
   }
 
-  double limit(std::size_t k) const { return unknowns_[k].adds() ? kDetermined_mm : kDetermined; }
+  /// Greatest standard error of an unknown that is determined as x.
+  double limit(std::size_t k, double x) const {
+    if (unknowns_[k].adds()) return kDetermined_mm;
+    return unknowns_[k].kind == UnknownKind::gain_ratio ? kDetermined : kDetermined * std::max(1.0, 1 + x);
+  }
 
   /// Standard errors of `ks` where each value has this noise; infinite where they are not determined at all.
   VectorXd std_errors(const std::vector<std::size_t>& ks, double sigma_mm) const {
@@ -302,16 +284,42 @@ class Fit {
     VectorXd out = VectorXd::Constant(a.cols(), INFINITY);
     if ((scale.array() <= 0).any() || a.rows() < a.cols()) return out;
     const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
-    const Eigen::ColPivHouseholderQR<MatrixXd> qr(unit);
-    if (qr.rank() < a.cols()) return out;
+    Eigen::ColPivHouseholderQR<MatrixXd> qr;
+    if (qr.setThreshold(kRank).compute(unit).rank() < a.cols()) return out;
     const MatrixXd covariance = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
     return sigma_mm * covariance.diagonal().cwiseMax(0).cwiseSqrt().cwiseQuotient(scale);
   }
 
-  bool all_determined(const std::vector<std::size_t>& ks, double sigma_mm) const {
-    const VectorXd errors = std_errors(ks, sigma_mm);
-    for (Eigen::Index i = 0; i < errors.size(); ++i)
-      if (!(errors[i] < limit(ks[static_cast<std::size_t>(i)]))) return false;
+  /// Of the linear model, within what may change in a round. Twice: the first solution shows the noise.
+  Solution solve(const std::vector<std::size_t>& ks) const {
+    const MatrixXd a = columns(ks);
+    VectorXd lowest(a.cols()), highest(a.cols());
+    for (Eigen::Index i = 0; i < a.cols(); ++i) {
+      const std::size_t k = ks[static_cast<std::size_t>(i)];
+      const double at = x_[static_cast<Eigen::Index>(k)], size = magnitude(k, x_);
+      const bool bounded = !unknowns_[k].adds() && unknowns_[k].kind != UnknownKind::gain_ratio;
+      lowest[i] = std::max(unknowns_[k].lowest() - at, bounded ? -kFall * size : -kRise);
+      highest[i] = std::min(unknowns_[k].highest() - at, kRise * (bounded ? size : 1));
+    }
+    Solution out;
+    for (double sigma : {10 * kNoise_mm, 0.0}) {
+      out = solve_linear(a, residuals(), sigma > 0 ? sigma : out.noise_mm, lowest, highest);
+      out.noise_mm = noise_mm(residuals() - a * out.x, a.cols());
+    }
+    return out;
+  }
+
+  /// By their errors at the solution of the linear model, with a noise that few values do not make small.
+  bool all_determined(const std::vector<std::size_t>& ks) const {
+    if (!std_errors(ks, 1).allFinite()) return false;
+    const Solution s = solve(ks);
+    const double dof = std::max<double>(1, static_cast<double>(fitted_.size()) - static_cast<double>(ks.size()));
+    const double noise = std::sqrt((dof * s.noise_mm * s.noise_mm + kWorth * kNoise_mm * kNoise_mm) / (dof + kWorth));
+    const VectorXd errors = std_errors(ks, noise);
+    for (Eigen::Index i = 0; i < errors.size(); ++i) {
+      const std::size_t k = ks[static_cast<std::size_t>(i)];
+      if (!(errors[i] < limit(k, x_[static_cast<Eigen::Index>(k)] + s.x[i]))) return false;
+    }
     return true;
   }
 
@@ -332,31 +340,50 @@ class Fit {
     active_[k] = false;
     const PartsUnknown* other = alike(k, taken);
     const bool moves = columns({k}).norm() > 0;
-    notes_[k] = !moves  ? "no measured size depends on it"
-                : other ? fmt::format("cannot be told apart from {}", other->name)
-                        : "not determined by these sizes";
-    out_.confounded.push_back(fmt::format("{}: {}", unknowns_[k].name, notes_[k]));
-    out_.suggestions.push_back(suggestion_for(unknowns_[k], other));
+    refused_[k] = {!moves  ? "no measured size depends on it"
+                   : other ? fmt::format("cannot be told apart from {}", other->name)
+                           : "not determined by these sizes",
+                   suggestion_for(unknowns_[k], other)};
+  }
+
+  /// Whether an unknown may be taken: what else bends the tool stands for an unknown force where forces are not taken.
+  bool forces_come_first(std::size_t k) const {
+    const UnknownKind kind = unknowns_[k].kind;
+    if (unknowns_[k].adds() || of_motion(kind) || kind == UnknownKind::force) return true;
+    const std::size_t force = of_kind(UnknownKind::force);
+    return force == unknowns_.size() || active_[force];
   }
 
   /// Takes the unknowns in their order, each if it is determined together with those before.
-  void choose(double sigma_mm) {
+  void choose() {
     std::vector<std::size_t> taken;
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       taken.push_back(k);
-      if (all_determined(taken, sigma_mm)) continue;
+      if (forces_come_first(k) && all_determined(taken)) continue;
       taken.pop_back();
       refuse(k, taken);
     }
   }
 
+  /// Takes an unknown that is determined where the others are now: edges, where forces have grown. Once each. Returns
+  /// whether there was one.
+  bool take_refused() {
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      if (active_[k] || !taken_again_.insert(k).second) continue;
+      active_[k] = true;
+      if (forces_come_first(k) && all_determined(active())) return refused_.erase(k), true;
+      active_[k] = false;
+    }
+    return false;
+  }
+
   /// Standard deviation of the residuals, outliers counted as far as the loss does: a first one by their median bounds
   /// them.
-  double noise_mm(const VectorXd& r) const {
+  double noise_mm(const VectorXd& r, Eigen::Index unknowns) const {
     std::vector<double> sizes(r.data(), r.data() + r.size());
     for (double& v : sizes) v = std::abs(v);
     std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
-    const double dof = std::max<double>(1, static_cast<double>(r.size() - static_cast<Eigen::Index>(active().size())));
+    const double dof = std::max<double>(1, static_cast<double>(r.size() - unknowns));
     const double bound = std::max(
         kLeastNoise_mm, kHuber * 1.4826 * sizes[sizes.size() / 2] * std::sqrt(static_cast<double>(r.size()) / dof));
     return std::max(kLeastNoise_mm, std::sqrt(r.cwiseAbs().cwiseMin(bound).squaredNorm() / (kBoundedVariance * dof)));
@@ -370,19 +397,9 @@ class Fit {
         out_.converged = true;
         break;
       }
-      const MatrixXd a = columns(ks);
-      VectorXd longest(a.cols());
-      for (Eigen::Index i = 0; i < a.cols(); ++i)
-        longest[i] = unknowns_[ks[static_cast<std::size_t>(i)]].adds() ? 1 : kLongest;
-      // Twice: the first solution shows the noise.
-      double sigma = 10 * kNoise_mm;
-      Solution step;
-      for (int pass = 0; pass < 2; ++pass) {
-        step = solve_linear(a, residuals(), sigma, longest);
-        sigma = noise_mm(residuals() - a * step.x);
-      }
-      sigma_mm_ = sigma;
-      const VectorXd errors = std_errors(ks, sigma);
+      const Solution step = solve(ks);
+      sigma_mm_ = step.noise_mm;
+      const VectorXd errors = std_errors(ks, sigma_mm_);
       out_.converged = step.converged && (step.x.cwiseAbs().array() <= kAtRest * errors.array()).all();
       take_step(ks, step.x);
       ++out_.rounds;
@@ -403,14 +420,19 @@ class Fit {
       if (!is_fitted_job(j)) continue;
       show(fmt::format("round {}", out_.rounds + 1), j, jobs_.size());
       const Sizes there = predict(j, x_);
-      VectorXd own = of_model;
-      for (std::size_t k = 0; k < unknowns_.size(); ++k)
-        if (!unknowns_[k].adds() && !unknowns_[k].of_job[j]) own[static_cast<Eigen::Index>(k)] = 0;
+      VectorXd own = of_model, unit = VectorXd::Ones(size());
+      for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+        if (unknowns_[k].adds()) continue;
+        unit[static_cast<Eigen::Index>(k)] = magnitude(k, x_ - dx);
+        if (!unknowns_[k].of_job[j]) own[static_cast<Eigen::Index>(k)] = 0;
+      }
+      const VectorXd relative = own.cwiseQuotient(unit);
       for (std::size_t f = 0; f < there.size(); ++f) {
         if (!there[f] || !sizes_[j][f]) continue;  // keeps its last prediction
         auto row = slope_[j].row(static_cast<Eigen::Index>(f));
-        if (own.norm() > kLeastStep)
-          row += (there[f]->size_mm - sizes_[j][f]->size_mm - row.dot(own)) / own.squaredNorm() * own.transpose();
+        if (relative.norm() > kLeastStep)
+          row += (there[f]->size_mm - sizes_[j][f]->size_mm - row.dot(own)) / relative.squaredNorm() *
+                 relative.cwiseQuotient(unit).transpose();
         sizes_[j][f] = there[f];
       }
     }
@@ -421,11 +443,12 @@ class Fit {
     const std::vector<std::size_t> ks = active();
     const VectorXd errors = std_errors(ks, sigma_mm_);
     for (std::size_t i = ks.size(); i-- > 0;) {
-      if (errors[static_cast<Eigen::Index>(i)] < limit(ks[i])) continue;
+      const auto at = static_cast<Eigen::Index>(ks[i]);
+      if (errors[static_cast<Eigen::Index>(i)] < limit(ks[i], x_[at])) continue;
       std::vector<std::size_t> others = ks;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       refuse(ks[i], others);
-      const auto at = static_cast<Eigen::Index>(ks[i]);
+      taken_again_.insert(ks[i]);
       if (x_[at] != 0 && !unknowns_[ks[i]].adds()) {
         VectorXd back = VectorXd::Constant(1, -x_[at]);
         take_step({ks[i]}, back);
@@ -518,11 +541,16 @@ class Fit {
     std::optional<double> std_error;
   };
 
-  /// A value that is scaled by exp(x), or moved by x.
-  Told scaled(double start, std::size_t k, const std::map<std::size_t, double>& std_of) const {
-    const double x = x_[static_cast<Eigen::Index>(k)], value = start * std::exp(x);
+  double x(std::size_t k) const { return x_[static_cast<Eigen::Index>(k)]; }
+
+  std::string note(std::size_t k) const { return refused_.contains(k) ? refused_.at(k).note : std::string(); }
+
+  /// A value that goes with (1 + x)^power.
+  Told scaled(double start, std::size_t k, double power, const std::map<std::size_t, double>& std_of) const {
+    const double value = start * std::pow(1 + x(k), power);
     const auto at = std_of.find(k);
-    return {value, start, at == std_of.end() ? std::nullopt : std::optional(value * at->second)};
+    return {value, start,
+            at == std_of.end() ? std::nullopt : std::optional(std::abs(value * power) * at->second / (1 + x(k)))};
   }
 
   void tell(const std::string& name, const std::string& unit, const Told& t, const std::string& note) {
@@ -539,19 +567,14 @@ class Fit {
     const auto r = static_cast<std::size_t>(ratio - unknowns_.begin());
     for (const int axis : {0, 1}) {
       const double start = jobs_[job_of(unknowns_[k])].machine.axis[static_cast<std::size_t>(axis)].position_gain_per_s;
-      Told t = scaled(start, k, std_of);
-      const double half = (axis == 0 ? 0.5 : -0.5) * x_[static_cast<Eigen::Index>(r)];
-      t.value *= std::exp(half);
-      std::string note = notes_[k];
-      if (t.std_error && std_of.contains(r)) {
-        const double both = covariance_(index_.at(k), index_.at(r));
-        const double var =
-            std_of.at(k) * std_of.at(k) + 0.25 * std_of.at(r) * std_of.at(r) + (axis == 0 ? 1 : -1) * both;
-        t.std_error = t.value * std::sqrt(std::max(0.0, var));
-      } else if (t.std_error) {
-        note = "X and Y together: their ratio is not determined";
-      }
-      tell(fmt::format("axis.{}.position_gain_per_s", "xy"[axis]), "1/s", t, note);
+      const double sign = axis == 0 ? 1 : -1;
+      Told t = scaled(start, k, -0.5, std_of);
+      t.value /= std::sqrt(1 + sign * x(r));
+      if (const auto var = variance_of_sum({{k, 0.5 / (1 + x(k))}, {r, 0.5 * sign / (1 + sign * x(r))}}); t.std_error)
+        t.std_error = t.value * std::sqrt(*var);
+      const bool together = t.std_error && !std_of.contains(r);
+      tell(fmt::format("axis.{}.position_gain_per_s", "xy"[axis]), "1/s", t,
+           together ? "X and Y together: their ratio is not determined" : note(k));
     }
   }
 
@@ -559,39 +582,41 @@ class Fit {
     return static_cast<std::size_t>(std::ranges::find(unknowns_, kind, &PartsUnknown::kind) - unknowns_.begin());
   }
 
-  /// Variance of the sum of determined unknowns; nothing where none of them is.
-  std::optional<double> variance_of_sum(std::vector<std::size_t> ks) const {
-    std::erase_if(ks, [&](std::size_t k) { return !index_.contains(k); });
-    if (ks.empty()) return std::nullopt;
+  /// Variance of a weighted sum of determined unknowns; nothing where none of them is.
+  std::optional<double> variance_of_sum(std::vector<std::pair<std::size_t, double>> weights) const {
+    std::erase_if(weights, [&](const auto& w) { return !index_.contains(w.first); });
+    if (weights.empty()) return std::nullopt;
     double var = 0;
-    for (const std::size_t a : ks)
-      for (const std::size_t b : ks) var += covariance_(index_.at(a), index_.at(b));
+    for (const auto& [a, of_a] : weights)
+      for (const auto& [b, of_b] : weights) var += of_a * of_b * covariance_(index_.at(a), index_.at(b));
     return std::max(0.0, var);
   }
 
   void add_forces(std::size_t k, const std::map<std::size_t, double>& std_of) {
-    tell("force_scale", "1", scaled(1, k, std_of), notes_[k]);
+    tell("force_scale", "1", scaled(1, k, 1, std_of), note(k));
     const Job &first = jobs_.front(), fitted = job_at(0, x_);
     for (const auto& c : machine::description(first.material.law).coefficients) {
       if (c.role == machine::CoefficientRole::shape || first.material.*c.field == 0) continue;
-      std::vector<std::size_t> scales{k};
-      if (c.role == machine::CoefficientRole::edge) scales.push_back(of_kind(UnknownKind::edge));
-      if (c.component == machine::Component::radial) scales.push_back(of_kind(UnknownKind::radial));
+      std::vector<std::pair<std::size_t, double>> scales{{k, 1 / (1 + x(k))}};
+      const auto add = [&](UnknownKind kind) {
+        if (const std::size_t s = of_kind(kind); s < unknowns_.size()) scales.emplace_back(s, 1 / (1 + x(s)));
+      };
+      if (c.role == machine::CoefficientRole::edge) add(UnknownKind::edge);
+      if (c.component == machine::Component::radial) add(UnknownKind::radial);
       Told t{fitted.material.*c.field, first.material.*c.field, std::nullopt};
       if (const auto var = variance_of_sum(scales)) t.std_error = std::abs(t.value) * std::sqrt(*var);
-      tell(std::string(c.key), std::string(c.unit), t, notes_[k]);
+      tell(std::string(c.key), std::string(c.unit), t, note(k));
     }
   }
 
   void add_parameter(std::size_t k, const std::map<std::size_t, double>& std_of) {
     const PartsUnknown& u = unknowns_[k];
     const Job& job = jobs_[job_of(u)];
-    const double x = x_[static_cast<Eigen::Index>(k)];
     const auto own = std_of.contains(k) ? std::optional(std_of.at(k)) : std::nullopt;
     switch (u.kind) {
       case UnknownKind::offset: {
         const double start = job.tools.at(u.tool).diameter_mm;
-        return tell(u.name, "mm", {start + x, start, own}, notes_[k]);
+        return tell(u.name, "mm", {start + x(k), start, own}, note(k));
       }
       case UnknownKind::gain:
         return add_gains(k, std_of);
@@ -599,14 +624,15 @@ class Fit {
         return add_forces(k, std_of);
       case UnknownKind::edge:
       case UnknownKind::radial:
-        return tell(u.name, "1", scaled(1, k, std_of), notes_[k]);
+        return tell(u.name, "1", scaled(1, k, 1, std_of), note(k));
       case UnknownKind::root:
-        return tell(u.name, "N/um", scaled(job.tools.at(u.tool).root_stiffness_N_per_mm / 1000, k, std_of), notes_[k]);
+        return tell(u.name, "N/um", scaled(job.tools.at(u.tool).root_stiffness_N_per_mm / 1000, k, -1, std_of),
+                    note(k));
       case UnknownKind::root_rotation:
         return tell(u.name, "Nm/rad",
-                    scaled(job.tools.at(u.tool).root_rotational_stiffness_Nmm_per_rad / 1000, k, std_of), notes_[k]);
+                    scaled(job.tools.at(u.tool).root_rotational_stiffness_Nmm_per_rad / 1000, k, -1, std_of), note(k));
       case UnknownKind::drift:
-        return tell(u.name, "um/day", {1000 * x, 0, own ? std::optional(1000 * *own) : own}, notes_[k]);
+        return tell(u.name, "um/day", {1000 * x(k), 0, own ? std::optional(1000 * *own) : own}, note(k));
       case UnknownKind::gain_ratio:
         return;
     }
@@ -637,8 +663,8 @@ class Fit {
     double offsets = 0;
     int count = 0;
     for (const auto& [k, s] : std_of) {
-      if (unknowns_[k].kind == UnknownKind::force) out_.error.deflection = s;
-      if (unknowns_[k].kind == UnknownKind::gain) out_.error.contour = 2 * s;  // of v^2 / (r K^2)
+      if (unknowns_[k].kind == UnknownKind::force) out_.error.deflection = s / (1 + x(k));
+      if (unknowns_[k].kind == UnknownKind::gain) out_.error.contour = s / (1 + x(k));  // of v^2 / (r K^2)
       if (unknowns_[k].kind == UnknownKind::offset) offsets += s * s, ++count;
     }
     if (count > 0) out_.error.size_mm = std::hypot(std::sqrt(offsets / count), sigma_mm_);
@@ -649,6 +675,10 @@ class Fit {
     add_residuals();
     add_groups();
     add_parameters();
+    for (const auto& [k, refusal] : refused_) {
+      out_.confounded.push_back(fmt::format("{}: {}", unknowns_[k].name, refusal.note));
+      out_.suggestions.push_back(refusal.suggestion);
+    }
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
       Job job = job_at(j, x_);
       for (std::size_t k = 0; k < unknowns_.size(); ++k)
@@ -672,7 +702,11 @@ class Fit {
   std::vector<std::size_t> fitted_;  ///< rows
   std::vector<Sizes> sizes_;         ///< of every job, at x_
   std::vector<MatrixXd> slope_;      ///< of every job: features by unknowns
-  std::map<std::size_t, std::string> notes_;
+  struct Refusal {
+    std::string note, suggestion;
+  };
+  std::map<std::size_t, Refusal> refused_;  ///< by unknown
+  std::set<std::size_t> taken_again_;       ///< unknowns that are not taken once more
   std::map<std::size_t, Eigen::Index> index_;  ///< of an active unknown in covariance_
   MatrixXd covariance_;
   double sigma_mm_ = kNoise_mm;

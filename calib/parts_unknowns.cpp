@@ -42,8 +42,8 @@ std::vector<bool> jobs_where(const std::vector<Job>& jobs, const std::function<b
 
 bool any(const std::vector<bool>& of_job) { return std::ranges::find(of_job, true) != of_job.end(); }
 
-void scale_gain(Job& job, int axis, double factor) {
-  job.machine.axis[static_cast<std::size_t>(axis)].position_gain_per_s *= factor;
+void scale_lag(Job& job, int axis, double factor) {
+  job.machine.axis[static_cast<std::size_t>(axis)].position_gain_per_s /= std::sqrt(factor);
 }
 
 bool has_gains(const Job& job) {
@@ -111,7 +111,7 @@ void add_stiffness(const std::vector<Job>& jobs, bool rotational, std::vector<Pa
                      return job.tools.contains(number) && std::isfinite(job.tools.at(number).*field);
                    })};
     u.apply = [number, field](Job& job, double x) {
-      if (job.tools.contains(number)) job.tools.at(number).*field *= std::exp(x);
+      if (job.tools.contains(number)) job.tools.at(number).*field /= 1 + x;
     };
     if (any(u.of_job)) out.push_back(std::move(u));
   }
@@ -171,24 +171,24 @@ std::vector<PartsUnknown> unknowns_of(const std::vector<Job>& jobs, const std::v
   if (any(gains))
     out.push_back(
         {.kind = UnknownKind::gain, .name = "position_gain_per_s", .of_job = gains, .apply = [](Job& job, double x) {
-           for (const int axis : {0, 1}) scale_gain(job, axis, std::exp(x));
+           for (const int axis : {0, 1}) scale_lag(job, axis, 1 + x);
          }});
   out.push_back({.kind = UnknownKind::force, .name = "force_scale", .of_job = all, .apply = [](Job& job, double x) {
-                   scale_coefficients(job, std::exp(x), any_coefficient);
+                   scale_coefficients(job, 1 + x, any_coefficient);
                  }});
   out.push_back({.kind = UnknownKind::radial, .name = "radial_scale", .of_job = all, .apply = [](Job& job, double x) {
-                   scale_coefficients(job, std::exp(x), is_radial);
+                   scale_coefficients(job, 1 + x, is_radial);
                  }});
   add_stiffness(jobs, false, out);
   if (const auto edges = jobs_where(jobs, has_edges); any(edges))
     out.push_back({.kind = UnknownKind::edge, .name = "edge_scale", .of_job = edges, .apply = [](Job& job, double x) {
-                     scale_coefficients(job, std::exp(x), is_edge);
+                     scale_coefficients(job, 1 + x, is_edge);
                    }});
   if (any(gains))
     out.push_back(
         {.kind = UnknownKind::gain_ratio, .name = "gain of X over Y", .of_job = gains, .apply = [](Job& job, double x) {
-           scale_gain(job, 0, std::exp(x / 2));
-           scale_gain(job, 1, std::exp(-x / 2));
+           scale_lag(job, 0, 1 + x);
+           scale_lag(job, 1, 1 - x);
          }});
   add_stiffness(jobs, true, out);
   const bool dated = std::ranges::any_of(rows, [](const PartsRow& r) { return r.day && *r.day > 0; });

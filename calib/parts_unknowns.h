@@ -1,5 +1,6 @@
 #pragma once
 // What measured parts can tell about a model: the unknowns of fit-parts.
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,8 +11,9 @@ namespace camber::calib {
 
 enum class UnknownKind { offset, gain, gain_ratio, force, radial, root, edge, root_rotation, drift };
 
-/// An unknown x, 0 at the start. Offsets and drift add to sizes (mm, mm a day); the others are scales: the job is
-/// changed by exp(x).
+/// An unknown x, 0 at the start, in which sizes are nearly linear. Offsets and drift add to sizes (mm, mm a day). The
+/// others multiply a quantity of the job by 1 + x: forces, compliance of the root, lag (inverse square of the gain);
+/// gain_ratio the lag of X by 1 + x and that of Y by 1 - x.
 struct PartsUnknown {
   UnknownKind kind = UnknownKind::force;
   std::string name;  ///< of offsets, stiffness: with the tool
@@ -20,6 +22,9 @@ struct PartsUnknown {
   std::vector<bool> of_job;                              ///< whether it changes that job's sizes
   std::function<void(machine::Job&, double x)> apply{};  ///< not of drift
   bool adds() const { return kind == UnknownKind::offset || kind == UnknownKind::drift; }
+  double lowest() const { return adds() ? -INFINITY : -kMost; }
+  double highest() const { return kind == UnknownKind::gain_ratio ? kMost : INFINITY; }
+  static constexpr double kMost = 0.98;  ///< a gain seven times the start's lags no more than can be measured
 };
 
 /// A measured value of a feature of a job.
