@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "compensate/row_form.h"
 #include "removal/form_error.h"
@@ -11,7 +12,12 @@
 namespace camber::compensate {
 namespace {
 
-constexpr double kStiff = 0.02;  // smoothing of a fit that may do almost anything, mm
+constexpr double kStiff = 0.02;       // smoothing of a fit that may do almost anything, mm
+constexpr double kCentring_mm = 1.0;  // smoothing of a shift beyond the least squares'
+constexpr double kNearWeight = 8;     // weight of errors near the 95th percentile
+constexpr double kCentringStep = 0.5;
+constexpr double kDeeper = 1.1;  // than the least squares leave: what a default depth limit has room for
+constexpr int kCentrings = 8;
 
 /// error + n . (change of the shift), one per observation.
 std::vector<double> left_by(const ShiftPath& old, std::span<const Observation> observations,
@@ -55,15 +61,70 @@ void ErrorSplit::give_to_guard(double free_correctable_um) {
   guard_um = std::sqrt(all * all - correctable_um * correctable_um);
 }
 
+namespace {
+
+/// Returns what a slowly varying shift adds to the errors that the least squares leave, so that their 95th percentile
+/// becomes less: iteratively reweighted, errors count the more the nearer they are to that percentile.
+std::vector<double> centring_mm(const ShiftPath& path, std::span<const Observation> observations,
+                                const std::vector<double>& left_mm, FitShiftOptions options) {
+  options = {.smoothing_mm = std::max(kCentring_mm, options.smoothing_mm),
+             .decay_mm = options.decay_mm,
+             .max_shift_mm = std::numeric_limits<double>::infinity()};
+  ShiftPath rest = path;
+  rest.set_shifts(std::vector<Vec3>(path.points().size(), Vec3::Zero()));
+  std::vector<Observation> asked(observations.begin(), observations.end());
+  std::vector<double> area, added(left_mm.size(), 0.0), best = added, sum = left_mm;
+  for (const Observation& o : observations) area.push_back(o.area_mm2);
+  const auto depth_of = [&](const std::vector<double>& error_mm) {
+    std::vector<std::pair<double, double>> depths;
+    for (std::size_t i = 0; i < area.size(); ++i) depths.emplace_back(-error_mm[i], area[i]);
+    return depth_p999(std::move(depths), std::accumulate(area.begin(), area.end(), 0.0));
+  };
+  const double deepest = kDeeper * depth_of(sum);
+  double least = removal::error_figures(sum, area).p95, now = least;
+  for (int k = 0; k < kCentrings && now > 0; ++k) {
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      const double x = std::pow(sum[i] / now, 2);
+      asked[i].error_mm = left_mm[i];
+      asked[i].weight = 1 + kNearWeight * (x < 1 ? x * x : 1 / (x * x));
+    }
+    ShiftPath moved = rest;
+    fit_shift(moved, asked, options);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      added[i] += kCentringStep * (asked[i].normal.dot(moved.shift_at(asked[i].place)) - added[i]);
+      sum[i] = left_mm[i] + added[i];
+    }
+    now = removal::error_figures(sum, area).p95;
+    if (now < least && depth_of(sum) <= deepest) {
+      least = now;
+      best = added;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
 std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const Observation> observations,
                                           const FitShiftOptions& options) {
   std::vector<Observation> out(observations.begin(), observations.end());
-  const std::vector<double> form =
+  std::vector<double> form =
       row_form_mm(path, observations, left_by(path, observations, stiff(options)), options.smoothing_mm);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i].error_mm -= form[i];
-    out[i].form_mm = form[i];
-  }
+  const auto subtract = [&] {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      out[i].error_mm = observations[i].error_mm - form[i];
+      out[i].form_mm = form[i];
+    }
+  };
+  subtract();
+  if (!options.centred || out.empty()) return out;
+  FitShiftOptions free = options;
+  free.bounded = false;
+  std::vector<double> left = left_by(path, out, free);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] += form[i];
+  const std::vector<double> added = centring_mm(path, observations, left, options);
+  for (std::size_t i = 0; i < form.size(); ++i) form[i] += added[i];
+  subtract();
   return out;
 }
 
@@ -219,7 +280,9 @@ double depth_p999(std::vector<std::pair<double, double>> depth_and_area, double 
 double default_depth_limit_um(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
                               double tolerance_um) {
   constexpr double kRoom = 1.25;
-  const Fits f = fits_of(path, observed, options);
+  FitShiftOptions least_squares = options;
+  least_squares.centred = false;
+  const Fits f = fits_of(path, observed, least_squares);
   std::vector<std::pair<double, double>> depths;
   double area = 0;
   for (std::size_t i = 0; i < f.all.size(); ++i) {

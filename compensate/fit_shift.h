@@ -42,6 +42,7 @@ struct FitShiftOptions {
   std::span<const RowLink> links{};          ///< links between rows
   std::span<const double> link_stiffness{};  ///< one per link, as `stiffness`
   bool bounded = false;                      ///< Observation::bound_mm is kept
+  bool centred = false;                      ///< errors are judged by their 95th percentile, see without_row_form
 };
 
 /// Returns the length of the shortest feature of a shift that a grid of these voxels resolves. A shorter one would

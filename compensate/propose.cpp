@@ -71,7 +71,8 @@ FitShiftOptions fit_options(const Task& task, std::span<const double> stiffness,
           .stiffness = stiffness,
           .links = links,
           .link_stiffness = link_stiffness,
-          .bounded = true};
+          .bounded = true,
+          .centred = !task.job.compensation.profile_um};
 }
 
 FitShiftOptions fit_options(const Task& task, const Version& version) {

@@ -205,7 +205,7 @@ Left left_by_shifts(const Task& task, const State& state) {
 }
 
 std::optional<LeverOutlook> of_second_cuts(const Task& task, const State& state, const Left& left) {
-  if (state.active->repeated) return std::nullopt;
+  if (state.active->repeated || !task.job.workpiece) return std::nullopt;
   const std::vector<PassRun> runs =
       pass_runs(*state.active->source.program, state.active->compensated, left.path, left.of_path, left.mm);
   const std::vector<std::size_t> chosen =
@@ -219,25 +219,28 @@ std::optional<LeverOutlook> of_second_cuts(const Task& task, const State& state,
 }
 
 std::optional<LeverOutlook> of_lower_feeds(const Task& task, const State& state, const Left& left) {
-  if (task.feed_unusable || state.rounds[state.best.round].slowed > 0) return std::nullopt;
+  if (task.feed_unusable) return std::nullopt;
   const simulate::SimulatedProgram& program = *state.active->source.program;
   Diagnostics unusable;
   check_feeds(program, state.active->compensated, unusable);
   if (!unusable.all().empty()) return std::nullopt;
   ShiftPath path = left.path;
-  const std::vector<double> least =
-      least_feeds(path, program.moves_in_part(), task.job.machine, task.job.compensation.min_feed_percent / 100);
-  FeedLever lever(path, program, !std::isinf(task.spacing_mm()), least);
+  std::optional<FeedLever> lever = state.active->feeds;
+  if (!lever) {
+    const std::vector<double> least =
+        least_feeds(path, program.moves_in_part(), task.job.machine, task.job.compensation.min_feed_percent / 100);
+    lever.emplace(path, program, !std::isinf(task.spacing_mm()), least);
+  }
   const FeedChoice choice =
-      lever.choose(path, left.of_path, left.mm, kLongest * task.given.time_s, kWanted * task.tolerance_mm());
-  return LeverOutlook{machine::Lever::feed, 1000 * choice.error_mm, choice.extra_s};
+      lever->choose(path, left.of_path, left.mm, kLongest * task.given.time_s, kWanted * task.tolerance_mm());
+  const double spent_s = state.rounds[state.best.round].machine_time_s - program.feed.time_s;
+  return LeverOutlook{machine::Lever::feed, 1000 * choice.error_mm, choice.extra_s - spent_s};
 }
 
 }  // namespace
 
 std::vector<LeverOutlook> unused_levers(const Task& task, const State& state) {
   std::vector<LeverOutlook> out;
-  if (!task.job.workpiece) return out;
   const Left left = left_by_shifts(task, state);
   const double now_um = state.rounds[state.best.round].error_um.p95;
   for (const auto& found : {of_second_cuts(task, state, left), of_lower_feeds(task, state, left)})

@@ -26,11 +26,11 @@ struct SecondCutVersion {
 SecondCutVersion version_with(const Task& task, Version& given, const std::vector<PassRun>& runs,
                               std::vector<std::size_t> chosen, double allowed_s);
 
-// Levers that a compensation has not used, where the tolerance is missed on a part that yields
+// Levers that would bring more, where the tolerance is missed
 
-/// Returns second cuts where no run is cut again, and lower feeds where no feed is changed, each with up to 200 % more
-/// machine time, if it is expected to take a tenth or more off the 95th percentile of the best round. No prediction is
-/// made: one more cut leaves kLeftByCut, a lower feed what its model says.
+/// Returns lower feeds, and where the part yields and no run is cut again second cuts, each with up to 200 % more
+/// machine time than given, if it is expected to take a tenth or more off the 95th percentile of the best round. No
+/// prediction is made: one more cut leaves kLeftByCut, a lower feed what its model says.
 std::vector<LeverOutlook> unused_levers(const Task& task, const State& state);
 
 }  // namespace camber::compensate

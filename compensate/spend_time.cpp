@@ -28,7 +28,27 @@ constexpr double kMinExtra = 0.005;  // less extra time is not worth a round
 constexpr double kWanted = 0.9;      // of the tolerance: what feeds and second cuts are chosen for
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-double wanted_mm(const Task& task) { return task.budget_percent() ? 0.0 : kWanted * task.tolerance_mm(); }
+/// The least error within a time is wanted: the job gives the time, or the tolerance is kept and the goal is the best.
+bool wants_least(const Task& task, const State& state) {
+  const auto& asked = task.job.compensation;
+  return task.budget_percent() || (asked.levers.empty() && asked.goal == machine::Goal::best && met(task, state));
+}
+
+double wanted_mm(const Task& task, const State& state) {
+  return wants_least(task, state) ? 0.0 : kWanted * task.tolerance_mm();
+}
+
+/// Extra time where the job names no levers, in percent of the machine time: a tenth of it where the tolerance takes
+/// that, else of the time of the moves to compensate.
+double default_percent(const Task& task, const State& state) {
+  if (!met(task, state)) return kDefaultBudget_percent;
+  const simulate::SimulatedProgram& program = *state.active->source.program;
+  double cutting_s = 0;
+  const auto& stamps = program.path.stamps;
+  for (std::size_t i = 1; i < stamps.size(); ++i)
+    if (!stamps[i].first && state.active->path.contains(stamps[i].move)) cutting_s += stamps[i].t_s - stamps[i - 1].t_s;
+  return kDefaultBudget_percent * cutting_s / program.feed.time_s;
+}
 
 /// Lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves.
 bool feeds_pay(const Task& task, const State& state, double percent) {
@@ -43,8 +63,7 @@ bool feeds_pay(const Task& task, const State& state, double percent) {
   area_mm2.reserve(all.size());
   for (const Observation& o : all) area_mm2.push_back(o.area_mm2);
   const double budget_s = percent / 100 * task.given.time_s;
-  const double expected_mm =
-      version.feeds->choose(path, all, left_mm, budget_s, kWanted * task.tolerance_mm()).error_mm;
+  const double expected_mm = version.feeds->choose(path, all, left_mm, budget_s, wanted_mm(task, state)).error_mm;
   return expected_mm <= (1 - kPays) * p95_of(left_mm, area_mm2);
 }
 
@@ -61,7 +80,7 @@ bool step_with_feeds(const Task& task, State& state, double percent) {
   const Prepare choose = [&](std::vector<Observation>& observations) {
     const std::vector<Observation> all = from->observed.of_path();
     const std::vector<double> left = left_by_shift_mm(version.path, all, fit_options(task, version));
-    planned_s = lever.choose(version.path, all, left, plan_s, wanted_mm(task)).extra_s;
+    planned_s = lever.choose(version.path, all, left, plan_s, wanted_mm(task, state)).extra_s;
     version.splits.add_feed_changes(version.path);
     lever.apply_to(observations, version.path, from->fractions);
   };
@@ -96,6 +115,7 @@ void lower_feeds(const Task& task, State& state, double percent) {
   if (!budget && task.job.compensation.levers.empty() && !feeds_pay(task, state, percent)) return;
   state.last = state.best.trial;
   const std::size_t before = state.best.round;
+  const bool least = wants_least(task, state);
   for (int i = 0; i < (budget ? kBudgetRounds : kRungRounds); ++i) {
     const bool made = i % 2 == 0 ? step_with_feeds(task, state, percent)
                                  : shift_pays(task, version, *state.last, state.rounds.back().error_um.p95, 1) &&
@@ -104,7 +124,7 @@ void lower_feeds(const Task& task, State& state, double percent) {
     if (!made) continue;  // the shifts to these feeds would change little
     const Round &now = state.rounds.back(), &best = state.rounds[state.best.round];
     if (now.machine_time_s <= state.allowed_s && now.error_um.p95 < best.error_um.p95) take(state);
-    if (!budget && met(task, state)) break;
+    if (!least && met(task, state)) break;
   }
   version.feeds_stuck = state.best.round == before;
 }
@@ -163,8 +183,8 @@ bool cut_twice(const Task& task, State& state, double percent) {
   const std::vector<PassRun> runs = runs_after_shifts(task, given);
   const double budget_s = percent / 100 * task.given.time_s;
   const int most = most_passes(task.job);
-  const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm(task), most);
-  const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm(task), most).size();
+  const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm(task, state), most);
+  const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm(task, state), most).size();
   const auto tried = [&] {
     return std::ranges::any_of(state.versions, [&](const auto& v) { return v->passes() == chosen; });
   };
@@ -189,9 +209,9 @@ void spend_time(const Task& task, State& state) {
   const auto budget = task.budget_percent();
   std::vector<double> rungs(kRungs_percent.begin(), kRungs_percent.end());
   if (budget) rungs = {*budget};
-  if (!budget && task.job.compensation.levers.empty()) rungs = {kDefaultBudget_percent};
+  if (!budget && task.job.compensation.levers.empty()) rungs = {default_percent(task, state)};
   for (const double percent : rungs) {
-    if (!budget && met(task, state)) return;
+    if (!wants_least(task, state) && met(task, state)) return;
     state.allowed_s = (1 + percent / 100 + kTimeRoom) * task.given.time_s;
     const std::size_t before = state.best.round;
     lower_feeds(task, state, percent);
