@@ -78,8 +78,8 @@ TEST_F(Page, HasEveryTextInGerman) {
   const std::string way = "S3000 M3\nG0 X-4. Y-2.\nG0 Z-1.\nG1 X2. F600\nG0 Z5.\n", job = tests::wall_job();
   folder_.write("served/wall/p.nc", tests::replaced(tests::kWallProgram, "M30", "T2 M6\n" + way + "M30"));
   const auto from = job.find("[tool.1]"), to = job.find("[material]");
-  folder_.write("served/wall/job.toml",
-                job + tests::replaced(job.substr(from, to - from), "tool.1", "tool.2") + "[part]\nmesh = \"part.stl\"\n");
+  folder_.write("served/wall/job.toml", job + tests::replaced(job.substr(from, to - from), "tool.1", "tool.2") +
+                                            "[part]\nmesh = \"part.stl\"\n");
   EXPECT_EQ(checked("german"), "");
 }
 

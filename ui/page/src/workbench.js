@@ -134,7 +134,8 @@ class Workbench {
     this.status.textContent = sentence;
     this.status.classList.toggle('wrong', Boolean(wrong));
     clearTimeout(this.quiet);
-    if (!wrong) this.quiet = setTimeout(() => { this.status.textContent = ''; }, 2500);
+    // A check may take long, and ends with a sentence of its own.
+    if (!wrong && sentence !== text('checking')) this.quiet = setTimeout(() => { this.status.textContent = ''; }, 2500);
   }
 
   async readJobs() {
