@@ -411,11 +411,12 @@ std::optional<bool> Klartext::definition_asked(Cursor& at) const {
   return parameters_.is_defined(*name) == defined;
 }
 
-/// GOTO LBL 5
-void Klartext::jump_behind_goto(Cursor& at, const Statement& s) {
+/// GOTO LBL 5, where the condition holds.
+void Klartext::jump_behind_goto(Cursor& at, const Statement& s, bool holds) {
   if (!at.accept("GOTO")) throw FormulaError(s.begin, "function", "IF without GOTO LBL");
   at.accept("LBL");
-  jump(label_name(at), s.begin);
+  const std::string label = label_name(at);
+  if (holds) jump(label, s.begin);
 }
 
 /// = ID50 NR2 IDX5: number, length and radius of a tool, where they are given.
@@ -474,10 +475,7 @@ void Klartext::run_function(const Statement& s) {
     return error(s.begin, "function", fmt::format("FN {} is not known; FN 0 to FN 20 were expected", *number));
   if (*number >= 9 && *number <= 12) {
     at.accept("IF");
-    if (const auto asked = definition_asked(at)) {
-      if (*asked) jump_behind_goto(at, s);
-      return;
-    }
+    if (const auto asked = definition_asked(at)) return jump_behind_goto(at, s, *asked);
     const bool texts = is_text(at);
     const std::string first_text = texts ? read_text_formula(at, parameters_) : std::string();
     if (first_text.find('\0') != std::string::npos)
@@ -490,9 +488,6 @@ void Klartext::run_function(const Statement& s) {
     // Of texts the order counts: 0 where they are the same.
     const double b = texts ? -static_cast<double>(first_text.compare(read_text_formula(at, parameters_)))
                            : known(read_formula(at, parameters_), second);
-    if (!at.accept("GOTO")) throw FormulaError(s.begin, "function", "IF without GOTO LBL");
-    at.accept("LBL");
-    const std::string label = label_name(at);
     constexpr std::array<std::string_view, 4> kRelations{"EQU", "NE", "GT", "LT"};
     if (relation != kRelations[static_cast<std::size_t>(*number - 9)])
       throw FormulaError(s.begin, "function",
@@ -503,8 +498,7 @@ void Klartext::run_function(const Statement& s) {
                        : *number == 10 ? std::abs(a - b) > kEqual
                        : *number == 11 ? a > b
                                        : a < b;
-    if (holds) jump(label, s.begin);
-    return;
+    return jump_behind_goto(at, s, holds);
   }
   const std::size_t begin = at.offset();
   const auto name = read_parameter(at);
@@ -537,10 +531,10 @@ void Klartext::run_function(const Statement& s) {
 void Klartext::read_blank_form(const Statement& s) {
   Cursor at = cursor(s);
   if (!at.accept("FORM")) return error(s.begin, "blank", "BLK without FORM; BLK FORM 0.1 was expected");
-  if (at.accept("FILE"))
-    return warn(s.begin, "no-effect", "BLK FORM FILE is read without effect; the stock is given in the job");
-  if (at.accept("ROTATION"))
-    return warn(s.begin, "no-effect", "BLK FORM ROTATION is read without effect; the stock is given in the job");
+  for (const char* form : {"FILE", "ROTATION"})
+    if (at.accept(form))
+      return warn(s.begin, "no-effect",
+                  fmt::format("BLK FORM {} is read without effect; the stock is given in the job", form));
   if (at.accept("CYLINDER")) {
     double radius = 0, length = 0, distance = 0;
     const char axis = at.peek();

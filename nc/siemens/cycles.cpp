@@ -545,7 +545,6 @@ void BlockRunner::mill_face(const CycleCall& call) {
                   name + " ways");
   const PlaneAxes axes = axes_of(plane_);
   const double c = std::cos(angle), s = std::sin(angle), beyond = cutter + (clear - top);
-  const auto sign = [](double x) { return x < 0 ? -1.0 : 1.0; };
   const auto at = [&](double on, double beside, double height) {
     double uv[2];
     uv[along] = on;
@@ -557,11 +556,11 @@ void BlockRunner::mill_face(const CycleCall& call) {
     return p;
   };
   rapid_to_height(std::max(programmed()[axes.normal], rtp));
-  const double begin = -sign(way[along]) * beyond, end = way[along] + sign(way[along]) * beyond;
+  const double begin = -std::copysign(1, way[along]) * beyond, end = way[along] + std::copysign(1, way[along]) * beyond;
   for (int cut = 1; cut <= cuts; ++cut) {
     const double height = at_once ? low : std::max(top - step * cut, low);
     for (int pass = 1; pass <= passes; ++pass) {
-      const double beside = way[across] * pass / passes - sign(way[across]) * cutter;
+      const double beside = way[across] * pass / passes - std::copysign(1, way[across]) * cutter;
       const bool back = direction >= 3 && pass % 2 == 0;
       if (pass == 1 || direction < 3) {
         rapid_to_height(cut == 1 && pass == 1 ? rtp : clear);
