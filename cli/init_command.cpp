@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
+#include <regex>
 #include <set>
-#include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -41,24 +39,16 @@ std::string seen_from(const std::string& file, const std::string& job) {
   return fs::absolute(file).lexically_normal().lexically_proximate(folder.lexically_normal()).string();
 }
 
-/// D12 stands in the name; a number alone may be any.
-bool names_a_diameter(std::string_view name) {
-  for (std::size_t i = 0; i + 1 < name.size(); ++i)
-    if ((name[i] == 'D' || name[i] == 'd') && std::isdigit(static_cast<unsigned char>(name[i + 1])) != 0 &&
-        (i == 0 || std::isalpha(static_cast<unsigned char>(name[i - 1])) == 0))
-      return true;
-  return false;
-}
-
 /// Comments of the program come first: they belong to it; then the names by which it calls its tools.
 std::vector<machine::ToolProposal> all_tools(const SourceText& program, const nc::Interpretation& moves,
                                              const InitArguments& arguments, bool inch, Diagnostics& diagnostics) {
+  static const std::regex diameter("(^|[^A-Za-z])[Dd][0-9]");  // a number alone may be any
   std::vector<machine::ToolProposal> out = machine::tools_in_comments(program, inch), named;
   for (const auto& [number, name] : moves.tool_names) {
     machine::ToolProposal tool = machine::tool_of_words(name, inch);
     tool.number = number;
     tool.from = "its name";
-    if (tool.type || names_a_diameter(name)) named.push_back(std::move(tool));
+    if (tool.type || std::regex_search(name, diameter)) named.push_back(std::move(tool));
   }
   machine::add_tools(out, named);
   for (const auto& path : arguments.tools) machine::add_tools(out, machine::read_tools(path, inch, diagnostics));

@@ -891,9 +891,7 @@ void Klartext::run_pattern(int number) {
       const bool whole = std::abs(std::abs(all) - 360) < 1e-9;
       angle = count > 1 ? all / (whole ? count : count - 1) : 0;
     }
-    for (int i = 0; i < count; ++i) {
-      places.push_back(middle + radius * direction_at_deg(first + i * angle));
-    }
+    for (int i = 0; i < count; ++i) places.push_back(middle + radius * direction_at_deg(first + i * angle));
   } else {
     const Vec2 start(q(225) * unit, q(226) * unit);
     const double dx = q(237) * unit, dy = q(238) * unit;
@@ -932,6 +930,7 @@ void Klartext::define_pattern(const Statement& s) {
   Cursor at = cursor(s);
   at.accept("DEF");
   pattern_.clear();
+  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   while (at.more()) {
     const std::size_t begin = at.offset();
     const std::string form = at.letters();
@@ -953,7 +952,6 @@ void Klartext::define_pattern(const Statement& s) {
       if (step && pattern_.empty())
         throw FormulaError(here, "cycle",
                            fmt::format("{} in the first place of PATTERN DEF; X and Y were expected", word));
-      const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
       if (step)
         values[word.substr(1)] = value + pattern_.back()[word == "IX" ? axes.first : axes.second] / unit_mm();
       else
@@ -966,7 +964,6 @@ void Klartext::define_pattern(const Statement& s) {
     };
     const double unit = unit_mm();
     const Vec2 start = Vec2(value("X"), value("Y")) * unit;
-    const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
     const auto add = [&](const Vec2& p) {
       Vec3 place = Vec3::Zero();
       place[axes.first] = p.x();
