@@ -236,6 +236,8 @@ bool has_name(std::string_view names, std::string_view name) {
   return false;
 }
 
+}  // namespace
+
 std::span<const WordRow> word_rows() {
   static const std::vector<WordRow> sorted = [] {
     std::vector<WordRow> rows;
