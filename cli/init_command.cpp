@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <regex>
 #include <set>
 
 #include <fmt/format.h>
@@ -38,10 +39,18 @@ std::string seen_from(const std::string& file, const std::string& job) {
   return fs::absolute(file).lexically_normal().lexically_proximate(folder.lexically_normal()).string();
 }
 
-/// Comments of the program come first: they belong to it.
-std::vector<machine::ToolProposal> all_tools(const SourceText& program, const InitArguments& arguments, bool inch,
-                                             Diagnostics& diagnostics) {
-  std::vector<machine::ToolProposal> out = machine::tools_in_comments(program, inch);
+/// Comments of the program come first: they belong to it; then the names by which it calls its tools.
+std::vector<machine::ToolProposal> all_tools(const SourceText& program, const nc::Interpretation& moves,
+                                             const InitArguments& arguments, bool inch, Diagnostics& diagnostics) {
+  static const std::regex diameter("(^|[^A-Za-z])[Dd][0-9]");  // a number alone may be any
+  std::vector<machine::ToolProposal> out = machine::tools_in_comments(program, inch), named;
+  for (const auto& [number, name] : moves.tool_names) {
+    machine::ToolProposal tool = machine::tool_of_words(name, inch);
+    tool.number = number;
+    tool.from = "its name";
+    if (tool.type || std::regex_search(name, diameter)) named.push_back(std::move(tool));
+  }
+  machine::add_tools(out, named);
   for (const auto& path : arguments.tools) machine::add_tools(out, machine::read_tools(path, inch, diagnostics));
   return out;
 }
@@ -119,7 +128,7 @@ nc::Interpretation moves_of(const nc::Program& text, const InitArguments& argume
   if (asks_for_cutter(found)) {
     std::map<int, double> told;
     Diagnostics ignored;
-    for (const auto& t : all_tools(text.source, arguments, nc::summarize(text, moves).has_inch, ignored))
+    for (const auto& t : all_tools(text.source, moves, arguments, nc::summarize(text, moves).has_inch, ignored))
       if (t.number && t.diameter_mm) told[*t.number] = *t.diameter_mm;
     std::set<int> tools;
     for (const nc::ModalState& state : moves.states) tools.insert(state.tool);
@@ -195,7 +204,7 @@ int run_init(const InitArguments& arguments, const GlobalOptions& options) {
     diagnostics.add(text.source.diagnostic(
         Severity::error, 0, "the program has no moves; one that cuts was expected for a job", "no-moves"));
   const nc::Summary summary = nc::summarize(text, moves);
-  const auto tools = all_tools(text.source, arguments, summary.has_inch, diagnostics);
+  const auto tools = all_tools(text.source, moves, arguments, summary.has_inch, diagnostics);
   settle(diagnostics, options);
   write_file(arguments.output,
              report::job_text({seen_from(arguments.program, arguments.output), seen_from(machine, arguments.output),

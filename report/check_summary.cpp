@@ -217,7 +217,7 @@ std::string check_text(const CheckSummary& summary, const Diagnostics& found) {
   const auto of_them = [&out](std::size_t count, const char* what) {
     if (count > 0) out += fmt::format("\n          {} of them {}", count, what);
   };
-  of_them(s.canned, "by drilling cycles");
+  of_them(s.canned, "by cycles");
   of_them(s.cutter_radius, "under cutter radius compensation");
   of_them(s.high_speed_contouring, "in high speed contouring");
   of_them(s.rotary, "turning rotary axes");

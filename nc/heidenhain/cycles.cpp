@@ -477,24 +477,21 @@ void Klartext::drill(int number) {
     h.feed_out_mm_per_s = h.feed_mm_per_s;
     h.dwell_s = 0;
   };
+  if (number != 204 && number != 207 && number != 209) h.feed_mm_per_s = feed_q(206);
+  // 201 and 202 must have it; of the others it is not known where it is negative.
+  const double out = number == 201 || number == 202 || q_if_set(208) ? feed_q(208) : -1;
   switch (number) {
     case 200:
-      h.feed_mm_per_s = feed_q(206);
       h.peck_mm = q(202) * unit;
       h.above_mm = h.clearance_mm;
       h.dwell_top_s = q_if_set(210).value_or(0);
       cycle_g_ = h.peck_mm < -h.depth_mm ? 83 : h.dwell_s > 0 ? 82 : 81;
       break;
-    case 201: {
-      h.feed_mm_per_s = feed_q(206);
-      const double out = feed_q(208);
+    case 201:
       h.feed_out_mm_per_s = out > 0 ? out : h.feed_mm_per_s;
       cycle_g_ = h.dwell_s > 0 ? 89 : 85;
       break;
-    }
     case 202: {
-      h.feed_mm_per_s = feed_q(206);
-      const double out = feed_q(208);
       h.feed_out_mm_per_s = out > 0 ? out : h.feed_mm_per_s;
       if (std::isinf(*h.feed_out_mm_per_s)) h.feed_out_mm_per_s.reset();
       const int direction = static_cast<int>(q_if_set(214).value_or(0));
@@ -506,8 +503,7 @@ void Klartext::drill(int number) {
       cycle_g_ = 76;
       break;
     }
-    case 203: {
-      h.feed_mm_per_s = feed_q(206);
+    case 203:
       h.above_mm = h.clearance_mm;
       h.peck_mm = q(202) * unit;
       h.less_mm = q_if_set(212).value_or(0) * unit;
@@ -515,16 +511,11 @@ void Klartext::drill(int number) {
       h.breaks = static_cast<int>(q_if_set(213).value_or(0));
       h.break_mm = q_if_set(256).value_or(kAboveLastDepthMm) * unit;
       h.dwell_top_s = q_if_set(210).value_or(0);
-      if (const auto out = q_if_set(208)) {
-        const double feed = feed_q(208);
-        if (*out > 0 && !std::isinf(feed)) h.feed_out_mm_per_s = feed;
-        if (*out == 0) h.feed_out_mm_per_s = h.feed_mm_per_s;
-      }
+      if (out > 0 && !std::isinf(out)) h.feed_out_mm_per_s = out;
+      if (out == 0) h.feed_out_mm_per_s = h.feed_mm_per_s;
       cycle_g_ = h.peck_mm < -h.depth_mm ? (h.breaks > 0 ? 73 : 83) : 81;
       break;
-    }
     case 205:
-      h.feed_mm_per_s = feed_q(206);
       h.peck_mm = q(202) * unit;
       h.less_mm = q_if_set(212).value_or(0) * unit;
       h.least_mm = q_if_set(205).value_or(0) * unit;
@@ -540,23 +531,19 @@ void Klartext::drill(int number) {
       cycle_g_ = h.breaks > 0 ? 73 : 83;
       break;
     case 206:
-      h.feed_mm_per_s = feed_q(206);
       h.feed_out_mm_per_s = h.feed_mm_per_s;
       cycle_g_ = 84;
       break;
     case 207:
-      tap(q(239));
-      break;
     case 209:
       tap(q(239));
-      if (const auto every = q_if_set(257); every && *every > 0) {
+      if (const auto every = q_if_set(257); number == 209 && every && *every > 0) {
         h.peck_mm = *every * unit;
         h.break_mm = q_if_set(256).value_or(0) * unit;
         h.breaks = h.break_mm > 0 ? 1'000'000 : 0;
       }
       break;
     case 240:
-      h.feed_mm_per_s = feed_q(206);
       if (q_if_set(343).value_or(0) == 1) {
         // By the diameter of the cone: the point angle is in the tool table; 90 degrees are taken.
         h.depth_mm = -0.5 * std::abs(q(344)) * unit;
@@ -568,13 +555,9 @@ void Klartext::drill(int number) {
       cycle_g_ = 82;
       break;
     case 241:
-      h.feed_mm_per_s = feed_q(206);
       h.start_mm = -std::abs(q_if_set(379).value_or(0) * unit);
       h.pre_feed_mm_per_s = q_if_set(253) ? feed_q(253) : h.feed_mm_per_s;
-      if (q_if_set(208)) {
-        const double out = feed_q(208);
-        if (out > 0 && !std::isinf(out)) h.feed_out_mm_per_s = out;
-      }
+      if (out > 0 && !std::isinf(out)) h.feed_out_mm_per_s = out;
       cycle_g_ = h.dwell_s > 0 ? 82 : 81;
       break;
     default:  // 204
@@ -908,9 +891,7 @@ void Klartext::run_pattern(int number) {
       const bool whole = std::abs(std::abs(all) - 360) < 1e-9;
       angle = count > 1 ? all / (whole ? count : count - 1) : 0;
     }
-    for (int i = 0; i < count; ++i) {
-      places.push_back(middle + radius * direction_at_deg(first + i * angle));
-    }
+    for (int i = 0; i < count; ++i) places.push_back(middle + radius * direction_at_deg(first + i * angle));
   } else {
     const Vec2 start(q(225) * unit, q(226) * unit);
     const double dx = q(237) * unit, dy = q(238) * unit;
@@ -949,6 +930,7 @@ void Klartext::define_pattern(const Statement& s) {
   Cursor at = cursor(s);
   at.accept("DEF");
   pattern_.clear();
+  const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
   while (at.more()) {
     const std::size_t begin = at.offset();
     const std::string form = at.letters();
@@ -970,7 +952,6 @@ void Klartext::define_pattern(const Statement& s) {
       if (step && pattern_.empty())
         throw FormulaError(here, "cycle",
                            fmt::format("{} in the first place of PATTERN DEF; X and Y were expected", word));
-      const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
       if (step)
         values[word.substr(1)] = value + pattern_.back()[word == "IX" ? axes.first : axes.second] / unit_mm();
       else
@@ -983,7 +964,6 @@ void Klartext::define_pattern(const Statement& s) {
     };
     const double unit = unit_mm();
     const Vec2 start = Vec2(value("X"), value("Y")) * unit;
-    const PlaneAxes axes = axes_of(plane_of_axis(tool_axis_));
     const auto add = [&](const Vec2& p) {
       Vec3 place = Vec3::Zero();
       place[axes.first] = p.x();

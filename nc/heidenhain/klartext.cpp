@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <limits>
 
 #include <fmt/format.h>
@@ -410,11 +411,12 @@ std::optional<bool> Klartext::definition_asked(Cursor& at) const {
   return parameters_.is_defined(*name) == defined;
 }
 
-/// GOTO LBL 5
-void Klartext::jump_behind_goto(Cursor& at, const Statement& s) {
+/// GOTO LBL 5, where the condition holds.
+void Klartext::jump_behind_goto(Cursor& at, const Statement& s, bool holds) {
   if (!at.accept("GOTO")) throw FormulaError(s.begin, "function", "IF without GOTO LBL");
   at.accept("LBL");
-  jump(label_name(at), s.begin);
+  const std::string label = label_name(at);
+  if (holds) jump(label, s.begin);
 }
 
 /// = ID50 NR2 IDX5: number, length and radius of a tool, where they are given.
@@ -439,55 +441,41 @@ void Klartext::run_function(const Statement& s) {
   const auto number = at.integer();
   if (!number) throw FormulaError(s.begin, "function", "FN without a number; FN 0: was expected");
   at.accept(':');
-  const auto other = [&](const char* what) { error(s.begin, "not-supported", what, what); };
-  switch (*number) {
-    case 14:
-      at.accept("ERROR");
-      at.accept('=');
-      error(s.begin, "program-error",
-            fmt::format("the program ends here with error {} (FN 14); conditions that do not lead here were expected",
-                        read_value(at, parameters_)));
-      ended_ = true;
-      return;
-    case 15:
-    case 16:
-      return;  // printing
-    case 17:
-    case 19:
-    case 20:
-    case 29:
-    case 37:
-    case 38:
-      return warn(s.begin, "no-effect", fmt::format("FN {} is read without effect on the moves", *number),
-                  fmt::format("FN {}", *number));
-    case 18: {
-      at.accept("SYSREAD");
-      const auto name = read_parameter(at);
-      if (!name) throw FormulaError(s.begin, "function", "FN 18 without a parameter; FN 18: SYSREAD Q1 = was expected");
-      if (const auto value = asked_of_control(at)) return parameters_.set(*name, *value);
-      parameters_.set_unknown(*name, fmt::format("{} is read from the control (FN 18) in line {}", name->text(),
-                                                 file().source.location(s.begin).line));
-      return;
-    }
-    case 26:
-    case 27:
-    case 28:
-      return other("FN 26, FN 27 and FN 28 (tables) are not supported; values in Q parameters were expected");
-    case 23:
-    case 24:
-      return other(
-          "FN 23 and FN 24 (circles through points) are not supported; the centre was expected in Q parameters");
-    default:
-      if (*number > 13)
-        return error(s.begin, "function", fmt::format("FN {} is not known; FN 0 to FN 20 were expected", *number));
-      break;
+  const auto is = [&](std::initializer_list<int> numbers) {
+    return std::ranges::find(numbers, *number) != numbers.end();
+  };
+  const auto refused = [&](const char* what) { error(s.begin, "not-supported", what, what); };
+  if (*number == 14) {
+    at.accept("ERROR");
+    at.accept('=');
+    error(s.begin, "program-error",
+          fmt::format("the program ends here with error {} (FN 14); conditions that do not lead here were expected",
+                      read_value(at, parameters_)));
+    ended_ = true;
+    return;
   }
+  if (is({15, 16})) return;  // printing
+  if (is({17, 19, 20, 29, 37, 38}))
+    return warn(s.begin, "no-effect", fmt::format("FN {} is read without effect on the moves", *number),
+                fmt::format("FN {}", *number));
+  if (*number == 18) {
+    at.accept("SYSREAD");
+    const auto name = read_parameter(at);
+    if (!name) throw FormulaError(s.begin, "function", "FN 18 without a parameter; FN 18: SYSREAD Q1 = was expected");
+    if (const auto value = asked_of_control(at)) return parameters_.set(*name, *value);
+    return parameters_.set_unknown(*name, fmt::format("{} is read from the control (FN 18) in line {}", name->text(),
+                                                      file().source.location(s.begin).line));
+  }
+  if (is({26, 27, 28}))
+    return refused("FN 26, FN 27 and FN 28 (tables) are not supported; values in Q parameters were expected");
+  if (is({23, 24}))
+    return refused(
+        "FN 23 and FN 24 (circles through points) are not supported; the centre was expected in Q parameters");
+  if (*number > 13)
+    return error(s.begin, "function", fmt::format("FN {} is not known; FN 0 to FN 20 were expected", *number));
   if (*number >= 9 && *number <= 12) {
     at.accept("IF");
-    if (const auto asked = definition_asked(at)) {
-      if (*asked) jump_behind_goto(at, s);
-      return;
-    }
+    if (const auto asked = definition_asked(at)) return jump_behind_goto(at, s, *asked);
     const bool texts = is_text(at);
     const std::string first_text = texts ? read_text_formula(at, parameters_) : std::string();
     if (first_text.find('\0') != std::string::npos)
@@ -500,9 +488,6 @@ void Klartext::run_function(const Statement& s) {
     // Of texts the order counts: 0 where they are the same.
     const double b = texts ? -static_cast<double>(first_text.compare(read_text_formula(at, parameters_)))
                            : known(read_formula(at, parameters_), second);
-    if (!at.accept("GOTO")) throw FormulaError(s.begin, "function", "IF without GOTO LBL");
-    at.accept("LBL");
-    const std::string label = label_name(at);
     constexpr std::array<std::string_view, 4> kRelations{"EQU", "NE", "GT", "LT"};
     if (relation != kRelations[static_cast<std::size_t>(*number - 9)])
       throw FormulaError(s.begin, "function",
@@ -513,8 +498,7 @@ void Klartext::run_function(const Statement& s) {
                        : *number == 10 ? std::abs(a - b) > kEqual
                        : *number == 11 ? a > b
                                        : a < b;
-    if (holds) jump(label, s.begin);
-    return;
+    return jump_behind_goto(at, s, holds);
   }
   const std::size_t begin = at.offset();
   const auto name = read_parameter(at);
@@ -547,10 +531,10 @@ void Klartext::run_function(const Statement& s) {
 void Klartext::read_blank_form(const Statement& s) {
   Cursor at = cursor(s);
   if (!at.accept("FORM")) return error(s.begin, "blank", "BLK without FORM; BLK FORM 0.1 was expected");
-  if (at.accept("FILE"))
-    return warn(s.begin, "no-effect", "BLK FORM FILE is read without effect; the stock is given in the job");
-  if (at.accept("ROTATION"))
-    return warn(s.begin, "no-effect", "BLK FORM ROTATION is read without effect; the stock is given in the job");
+  for (const char* form : {"FILE", "ROTATION"})
+    if (at.accept(form))
+      return warn(s.begin, "no-effect",
+                  fmt::format("BLK FORM {} is read without effect; the stock is given in the job", form));
   if (at.accept("CYLINDER")) {
     double radius = 0, length = 0, distance = 0;
     const char axis = at.peek();

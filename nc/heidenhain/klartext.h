@@ -130,7 +130,7 @@ class Klartext {
   void run_function(const Statement& s);
   std::optional<double> asked_of_control(Cursor at);
   std::optional<bool> definition_asked(Cursor& at) const;
-  void jump_behind_goto(Cursor& at, const Statement& s);
+  void jump_behind_goto(Cursor& at, const Statement& s, bool holds);
   std::string label_name(Cursor& at);
   double known(double value, std::size_t offset);
   const Program& file() const { return *level().file; }

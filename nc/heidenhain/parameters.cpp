@@ -158,22 +158,22 @@ class Formula {
         value *= signed_power();
       } else if (c == '/') {
         at_.advance();
-        const double by = signed_power();
-        if (by == 0) throw FormulaError(here, "expression", "a division by zero");
-        value /= by;
+        value /= divisor(here);
       } else if (c == '%') {
         at_.advance();
-        const double by = signed_power();
-        if (by == 0) throw FormulaError(here, "expression", "a division by zero");
-        value = std::fmod(value, by);
+        value = std::fmod(value, divisor(here));
       } else if (at_.accept("DIV")) {
-        const double by = signed_power();
-        if (by == 0) throw FormulaError(here, "expression", "a division by zero");
-        value /= by;
+        value /= divisor(here);
       } else {
         return value;
       }
     }
+  }
+
+  double divisor(std::size_t sign) {
+    const double by = signed_power();
+    if (by == 0) throw FormulaError(sign, "expression", "a division by zero");
+    return by;
   }
 
   double signed_power() {

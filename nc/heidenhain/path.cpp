@@ -76,10 +76,8 @@ void Klartext::run_path(const Statement& s) {
       run_radius_arc(b);
       break;
     case Kind::tangent_arc:
-      run_tangent_arc(b, target(b));
-      break;
     case Kind::polar_tangent_arc:
-      run_tangent_arc(b, polar_target(b));
+      run_tangent_arc(b, s.kind == Kind::tangent_arc ? target(b) : polar_target(b));
       break;
     case Kind::polar_circle:
       run_polar_circle(b);

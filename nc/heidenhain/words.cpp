@@ -332,24 +332,20 @@ void Klartext::run_m(const BlockValues::Function& f) {
   };
   switch (f.code) {
     case 3:
-    case 13:
-      spindle(SpindleDirection::clockwise, EventKind::spindle_clockwise);
-      if (f.code == 13) coolant(true);
-      break;
     case 4:
+    case 13:
     case 14:
-      spindle(SpindleDirection::counter_clockwise, EventKind::spindle_counter_clockwise);
-      if (f.code == 14) coolant(true);
+      f.code % 10 == 3 ? spindle(SpindleDirection::clockwise, EventKind::spindle_clockwise)
+                       : spindle(SpindleDirection::counter_clockwise, EventKind::spindle_counter_clockwise);
+      if (f.code > 10) coolant(true);
       break;
     case 5:
       spindle(SpindleDirection::stopped, EventKind::spindle_stop);
       break;
     case 7:
     case 8:
-      coolant(true);
-      break;
     case 9:
-      coolant(false);
+      coolant(f.code != 9);
       break;
     case 19:
       add_event(EventKind::spindle_orient, f.code);
@@ -378,10 +374,7 @@ void Klartext::run_m(const BlockValues::Function& f) {
       add_event(EventKind::m_code, f.code);
       break;
     case 103:
-      if (f.argument)
-        plunge_factor_ = *f.argument;
-      else
-        plunge_factor_.reset();
+      plunge_factor_ = f.argument;
       break;
     case 126:
     case 127:

@@ -25,16 +25,6 @@ double coarse_pitch(double nominal_mm) {
   return 0;
 }
 
-int number_of(const WordRow& row) {
-  int out = 0;
-  for (const char c : row.name)
-    if (c >= '0' && c <= '9') out = out * 10 + (c - '0');
-  return out;
-}
-
-/// The G number under which other controls know the cycle: what kind of hole it makes.
-int hole_of(int cycle) { return cycle == 840 ? 84 : cycle == 88 ? 88 : cycle; }
-
 }  // namespace
 
 /// A step of a cycle, in program coordinates.
@@ -149,8 +139,8 @@ std::optional<double> BlockRunner::cycle_feed(double given, const CycleCall& cal
 
 /// CYCLE81 to CYCLE89 and CYCLE840 where the tool stands. RTP, RFP, SDIS, DP, DPR come first in all of them.
 void BlockRunner::drill(const CycleCall& call) {
-  const int cycle = number_of(*call.row), g = hole_of(cycle);
   const std::string name = name_of(call);
+  const int cycle = std::stoi(name.substr(5)), g = cycle == 840 ? 84 : cycle;
   check_unit();
   const int normal = axes_of(plane_).normal;
   const auto of_normal = static_cast<std::uint8_t>(1U << static_cast<unsigned>(normal));
@@ -427,11 +417,10 @@ void BlockRunner::mill_pocket_cycle(const CycleCall& call) {
         fmt::format("{} with VARI {} is not supported; roughing (1) or finishing (2, 4) was expected", name, vari));
   PocketCycle pocket;
   pocket.round = round;
-  const double middle[2] = {call.number(place) * unit, call.number(place + 1) * unit};
   const PlaneAxes axes = axes_of(plane_);
   pocket.middle_mm = programmed();
-  pocket.middle_mm[axes.first] = middle[0];
-  pocket.middle_mm[axes.second] = middle[1];
+  pocket.middle_mm[axes.first] = call.number(place) * unit;
+  pocket.middle_mm[axes.second] = call.number(place + 1) * unit;
   const bool diameter = call.digit(gmode + 1, 100) == 1;
   double whole[2] = {call.number(4) * unit * (round && !diameter ? 2 : 1), 0};
   whole[1] = round ? whole[0] : call.number(5) * unit;
@@ -545,7 +534,6 @@ void BlockRunner::mill_face(const CycleCall& call) {
                   name + " ways");
   const PlaneAxes axes = axes_of(plane_);
   const double c = std::cos(angle), s = std::sin(angle), beyond = cutter + (clear - top);
-  const auto sign = [](double x) { return x < 0 ? -1.0 : 1.0; };
   const auto at = [&](double on, double beside, double height) {
     double uv[2];
     uv[along] = on;
@@ -557,11 +545,11 @@ void BlockRunner::mill_face(const CycleCall& call) {
     return p;
   };
   rapid_to_height(std::max(programmed()[axes.normal], rtp));
-  const double begin = -sign(way[along]) * beyond, end = way[along] + sign(way[along]) * beyond;
+  const double begin = -std::copysign(1, way[along]) * beyond, end = way[along] + std::copysign(1, way[along]) * beyond;
   for (int cut = 1; cut <= cuts; ++cut) {
     const double height = at_once ? low : std::max(top - step * cut, low);
     for (int pass = 1; pass <= passes; ++pass) {
-      const double beside = way[across] * pass / passes - sign(way[across]) * cutter;
+      const double beside = way[across] * pass / passes - std::copysign(1, way[across]) * cutter;
       const bool back = direction >= 3 && pass % 2 == 0;
       if (pass == 1 || direction < 3) {
         rapid_to_height(cut == 1 && pass == 1 ? rtp : clear);

@@ -68,8 +68,6 @@ void BlockRunner::add_plain(std::span<const Word> words) {
 
 void BlockRunner::set_command(const WordRow& row, std::uint32_t offset) {
   switch (row.does) {
-    case Does::nothing:
-      return;
     case Does::noted:
       report_.warning(offset, "no-effect", fmt::format("{} ({}) is read without effect", row.name, row.what), row.name);
       return;
@@ -95,11 +93,9 @@ void BlockRunner::set_command(const WordRow& row, std::uint32_t offset) {
       request_.frame_offset = offset;
       return;
     case Does::transform_on:
-      set_tip_control(TipControl::angles, "TRAORI", offset);
-      return;
     case Does::transform_off:
-      set_tip_control(TipControl::off, "TRAFOOF", offset);
-      return;
+      return row.does == Does::transform_on ? set_tip_control(TipControl::angles, "TRAORI", offset)
+                                            : set_tip_control(TipControl::off, "TRAFOOF", offset);
     case Does::mode_word:
       return set_mode_word(row.name);
     case Does::contour_mode:

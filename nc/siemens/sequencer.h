@@ -71,7 +71,6 @@ class Sequencer {
   void count_run();
   bool is_skipped(const Block& block) const;
   std::uint32_t called_from() const;
-  bool editable_here() const;
   void mark_repeated_moves();
   void warn_of_blocks_behind_the_end() const;
   BlockPlace place() const;

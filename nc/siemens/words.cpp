@@ -216,44 +216,25 @@ constexpr auto kRows = std::to_array<WordRow>({
     WordRow{"POCKET1 POCKET2", kCycle, Does::refused, "older pockets", kByMoves},
 });
 
-constexpr std::array kFunctions = {FunctionRow{"SIN"},
-                                   FunctionRow{"COS"},
-                                   FunctionRow{"TAN"},
-                                   FunctionRow{"ASIN"},
-                                   FunctionRow{"ACOS"},
-                                   FunctionRow{"ATAN2", 2, 2},
-                                   FunctionRow{"ATAN", 1, 2},
-                                   FunctionRow{"SQRT"},
-                                   FunctionRow{"ABS"},
-                                   FunctionRow{"POT"},
-                                   FunctionRow{"TRUNC"},
-                                   FunctionRow{"ROUND"},
-                                   FunctionRow{"ROUNDUP"},
-                                   FunctionRow{"LN"},
-                                   FunctionRow{"EXP"},
-                                   FunctionRow{"MINVAL", 2, 2},
-                                   FunctionRow{"MAXVAL", 2, 2},
-                                   FunctionRow{"BOUND", 3, 3},
-                                   FunctionRow{"STRLEN"},
-                                   FunctionRow{"NUMBER"},
-                                   FunctionRow{"ISNUMBER"},
-                                   FunctionRow{"TOUPPER"},
-                                   FunctionRow{"TOLOWER"},
-                                   FunctionRow{"SUBSTR", 2, 3},
-                                   FunctionRow{"INDEX", 2, 2},
-                                   FunctionRow{"RINDEX", 2, 2},
-                                   FunctionRow{"MINDEX", 2, 2},
-                                   FunctionRow{"ISVAR"},
-                                   FunctionRow{"AXNAME"},
-                                   FunctionRow{"CTRANS", 0, 12},
-                                   FunctionRow{"CROT", 0, 6},
-                                   FunctionRow{"CROTS", 0, 6},
-                                   FunctionRow{"CSCALE", 0, 12},
-                                   FunctionRow{"CMIRROR", 0, 6},
-                                   FunctionRow{"CRPL", 2, 2},
-                                   FunctionRow{"QU"},
-                                   FunctionRow{"AC"},
-                                   FunctionRow{"IC"}};
+constexpr std::array kFunctions = {
+    FunctionRow{"SIN COS TAN ASIN ACOS SQRT ABS POT TRUNC ROUND ROUNDUP LN EXP QU AC IC"},
+    FunctionRow{"STRLEN NUMBER ISNUMBER TOUPPER TOLOWER ISVAR AXNAME"},
+    FunctionRow{"ATAN2 MINVAL MAXVAL INDEX RINDEX MINDEX CRPL", 2, 2},
+    FunctionRow{"ATAN", 1, 2},
+    FunctionRow{"SUBSTR", 2, 3},
+    FunctionRow{"BOUND", 3, 3},
+    FunctionRow{"CTRANS CSCALE", 0, 12},
+    FunctionRow{"CROT CROTS CMIRROR", 0, 6},
+};
+
+/// `name` stands among the names of a row.
+bool has_name(std::string_view names, std::string_view name) {
+  for (std::size_t at = names.find(name); at < names.size(); at = names.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if ((at == 0 || names[at - 1] == ' ') && (end == names.size() || names[end] == ' ')) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -278,10 +259,8 @@ const WordRow* find_word(std::string_view name) {
 }
 
 const FunctionRow* find_function(std::string_view name) {
-  const auto at = std::ranges::find(kFunctions, name, &FunctionRow::name);
+  const auto at = std::ranges::find_if(kFunctions, [&](const FunctionRow& row) { return has_name(row.names, name); });
   return at == kFunctions.end() ? nullptr : &*at;
 }
-
-std::span<const FunctionRow> functions() { return kFunctions; }
 
 }  // namespace camber::nc::siemens

@@ -70,10 +70,9 @@ const WordRow* find_word(std::string_view upper_name);
 
 /// Functions of expressions: SIN, SQRT ...; arguments at least and at most.
 struct FunctionRow {
-  std::string_view name;
+  std::string_view names;
   std::uint8_t least = 1, most = 1;
 };
 const FunctionRow* find_function(std::string_view upper_name);
-std::span<const FunctionRow> functions();
 
 }  // namespace camber::nc::siemens

@@ -1,4 +1,6 @@
 // camber init: a job file from a program and tool tables.
+#include <filesystem>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -226,6 +228,26 @@ TEST(Init, TakesToolsAndBlankFromComments) {
   EXPECT_NE(fusion.find("\n[tool.0]\n"), std::string::npos) << fusion;
   EXPECT_NE(fusion.find("\ndiameter_mm = 12.0\n"), std::string::npos) << fusion;
   EXPECT_EQ(run_camber(folder, "check fusion.nc --job fusion.toml").status, 0);
+}
+
+TEST(Init, TakesToolsFromTheirNames) {
+  const TempFolder folder;
+  const auto lines = [&](const std::string& name, bool klartext) {
+    const std::string file = klartext ? "p.h" : "p.mpf", quoted = '"' + name + '"';
+    folder.write(file, klartext ? "BEGIN PGM P MM\nTOOL CALL " + quoted +
+                                      " Z S6000\nL X+0 Y+0 Z+2 R0 FMAX M3\nL Z-1 F500\nL X+50\nL Y+50\nEND PGM P MM\n"
+                                : "G710 G17 G90 G54\nT=" + quoted +
+                                      " D1\nM6\nS6000 M3\nG0 X0 Y0 Z2\nG1 Z-1 F500\nX50\nY50\nM30\n");
+    std::filesystem::remove(folder / "job.toml");
+    EXPECT_EQ(run_camber(folder, "-q init " + file + " -o job.toml").status, 0);
+    const std::string job = tests::file_text(folder / "job.toml");
+    const std::size_t type = job.find("\ntype = ") + 1, end = job.find('\n', job.find("\ndiameter_mm = ", type) + 1);
+    return job.substr(type, end - type);
+  };
+  EXPECT_EQ(lines("BALL_D6", false), "type = \"ball\"\ndiameter_mm = 6.0");
+  EXPECT_EQ(lines("SCHAFT_D12_N_AP30", true), "type = \"flat\"\ndiameter_mm = 12.0");
+  for (const char* silent : {"4711", "HS06000000680246", "SF-12-1.5"})
+    EXPECT_NE(lines(silent, true).find("diameter_mm = 10.0 "), std::string::npos) << silent;
 }
 
 TEST(Init, GuessesWhatNoCommentSays) {
