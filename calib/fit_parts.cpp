@@ -33,9 +33,9 @@ constexpr double kNear = 0.1;        // of a scale, from where slopes were found
 constexpr int kSlopeRounds = 2;
 constexpr double kRise = 3, kFall = 0.8;  // of a scale, a round
 constexpr double kDetermined = 0.5;       // greatest standard error of a scale, of its start or of its value
-constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day
-constexpr double kNoise_mm = 0.002;      // of a measured size, before anything is known of it
-constexpr double kWorth = 2;             // values that this is worth beside those of the residuals
+constexpr double kDetermined_mm = 0.02;   // of an offset, mm; of a drift, mm a day
+constexpr double kNoise_mm = 0.002;       // of a measured size, before anything is known of it
+constexpr double kWorth = 2;              // values that this is worth beside those of the residuals
 constexpr double kLeastNoise_mm = 0.0002;
 constexpr double kHuber = 2.5;                // standard deviations: normal noise stays least squares
 constexpr double kBoundedVariance = 0.97756;  // of a standard normal variable bounded to +- kHuber
@@ -191,9 +191,8 @@ class Fit {
   /// Whether a scale has moved since slopes were found: standard errors are theirs.
   bool far_from_slopes() const {
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
-      if (!unknowns_[k].adds() &&
-          std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) >
-              kNear * magnitude(k, slopes_at_))
+      if (!unknowns_[k].adds() && std::abs(x_[static_cast<Eigen::Index>(k)] -
+                                           slopes_at_[static_cast<Eigen::Index>(k)]) > kNear * magnitude(k, slopes_at_))
         return true;
     return false;
   }
@@ -705,8 +704,8 @@ class Fit {
   struct Refusal {
     std::string note, suggestion;
   };
-  std::map<std::size_t, Refusal> refused_;  ///< by unknown
-  std::set<std::size_t> taken_again_;       ///< unknowns that are not taken once more
+  std::map<std::size_t, Refusal> refused_;     ///< by unknown
+  std::set<std::size_t> taken_again_;          ///< unknowns that are not taken once more
   std::map<std::size_t, Eigen::Index> index_;  ///< of an active unknown in covariance_
   MatrixXd covariance_;
   double sigma_mm_ = kNoise_mm;

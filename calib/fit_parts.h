@@ -81,10 +81,10 @@ struct FitPartsResult {
 ///
 ///   size = prediction(job; forces, stiffness, gains) + s_f offset(tool, clamping) + drift t
 ///
-/// with s_f = Feature::size_per_diameter(). Forces, compliance and lag are scales, in which sizes are linear; one offset for
-/// every tool and every clamping of it (jobs whose [tool.N] are alike). Every parameter that the measurements do not
-/// determine, together with those before it (offsets, common gain, force, radial force, root stiffness, edge force,
-/// gains apart), to half of its value stays at its start.
+/// with s_f = Feature::size_per_diameter(). Forces, compliance and lag are scales, in which sizes are linear; one
+/// offset for every tool and every clamping of it (jobs whose [tool.N] are alike). Every parameter that the
+/// measurements do not determine, together with those before it (offsets, common gain, force, radial force, root
+/// stiffness, edge force, gains apart), to half of its value stays at its start.
 ///
 /// Ceres solves a linear model of the predictions, whose slopes come from predictions of coarser() jobs
 /// (by gains in rigid coupling; none by forces and stiffness where bending changes sizes by less than
