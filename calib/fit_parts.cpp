@@ -29,13 +29,13 @@ using machine::Job;
 
 constexpr double kStep = 0.2;        // of a scale, for slopes: large against the noise of a grid
 constexpr double kLeastStep = 0.05;  // of a scale, that corrects slopes: less is the noise of a grid
-constexpr double kNear = 0.1;        // of a scale, from where slopes were found
-constexpr int kSlopeRounds = 2;
+constexpr double kNear = 0.2;        // of a force or a compliance, from where slopes were found
+constexpr int kSlopeRounds = 1;
 constexpr double kRise = 3, kFall = 0.8;  // of a scale, a round
 constexpr double kDetermined = 0.5;       // greatest standard error of a scale, of its start or of its value
 constexpr double kDetermined_mm = 0.02;   // of an offset, mm; of a drift, mm a day
 constexpr double kNoise_mm = 0.002;       // of a measured size, before anything is known of it
-constexpr double kWorth = 2;              // values that this is worth beside those of the residuals
+constexpr double kWorth = 1;              // values that this is worth beside those of the residuals
 constexpr double kLeastNoise_mm = 0.0002;
 constexpr double kHuber = 2.5;                // standard deviations: normal noise stays least squares
 constexpr double kBoundedVariance = 0.97756;  // of a standard normal variable bounded to +- kHuber
@@ -188,24 +188,27 @@ class Fit {
     return std::ranges::any_of(fitted_, [&](std::size_t i) { return rows_[i].job == j; });
   }
 
-  /// Whether a scale has moved since slopes were found: standard errors are theirs.
+  /// Whether forces or compliances, which multiply each other, have moved since slopes were found. Sizes are linear in
+  /// the lag.
   bool far_from_slopes() const {
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
-      if (!unknowns_[k].adds() && std::abs(x_[static_cast<Eigen::Index>(k)] -
-                                           slopes_at_[static_cast<Eigen::Index>(k)]) > kNear * magnitude(k, slopes_at_))
+      if (!unknowns_[k].adds() && !of_motion(unknowns_[k].kind) &&
+          std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) >
+              kNear * magnitude(k, slopes_at_))
         return true;
     return false;
   }
 
-  /// Slopes of all sizes by the unknowns of the model.
+  /// Slopes of all sizes by the unknowns of the model; those of the motion the first time.
   void find_slopes() {
     slopes_at_ = x_;
-    slope_.assign(jobs_.size(), {});
+    const bool first = slope_.empty();
+    slope_.resize(jobs_.size());
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
       show("slopes", j, jobs_.size());
-      slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
+      if (first) slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
       if (!is_fitted_job(j)) continue;
-      find_slopes_of(j, true);
+      if (first) find_slopes_of(j, true);
       if (bends(sizes_[j])) find_slopes_of(j, false);
     }
   }

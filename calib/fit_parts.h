@@ -88,7 +88,7 @@ struct FitPartsResult {
 ///
 /// Ceres solves a linear model of the predictions, whose slopes come from predictions of coarser() jobs
 /// (by gains in rigid coupling; none by forces and stiffness where bending changes sizes by less than
-/// 0.1 um), found again where a scale has moved by more than a fifth; predictions at its solution correct it (Broyden),
+/// 0.1 um), those by forces and stiffness found again where one has moved by more than a fifth; predictions at its solution correct it (Broyden),
 /// until the step is below a twentieth of the standard errors. The figures are of the last predictions, which are of
 /// the jobs as they are. Source of the update: Broyden, A class of methods for solving nonlinear simultaneous
 /// equations, Math. Comp. 19 (1965).
