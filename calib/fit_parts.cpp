@@ -279,17 +279,23 @@ class Fit {
     return unknowns_[k].kind == UnknownKind::gain_ratio ? kDetermined : kDetermined * std::max(1.0, 1 + x);
   }
 
-  /// Standard errors of `ks` where each value has this noise; infinite where they are not determined at all.
-  VectorXd std_errors(const std::vector<std::size_t>& ks, double sigma_mm) const {
+  /// Covariance of `ks` where each value has a variance of 1; nothing where they are not determined at all.
+  std::optional<MatrixXd> unit_covariance(const std::vector<std::size_t>& ks) const {
     const MatrixXd a = columns(ks);
-    VectorXd scale = a.colwise().norm();
-    VectorXd out = VectorXd::Constant(a.cols(), INFINITY);
-    if ((scale.array() <= 0).any() || a.rows() < a.cols()) return out;
+    const VectorXd scale = a.colwise().norm();
+    if ((scale.array() <= 0).any() || a.rows() < a.cols()) return std::nullopt;
     const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
     Eigen::ColPivHouseholderQR<MatrixXd> qr;
-    if (qr.setThreshold(kRank).compute(unit).rank() < a.cols()) return out;
-    const MatrixXd covariance = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
-    return sigma_mm * covariance.diagonal().cwiseMax(0).cwiseSqrt().cwiseQuotient(scale);
+    if (qr.setThreshold(kRank).compute(unit).rank() < a.cols()) return std::nullopt;
+    const MatrixXd c = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
+    return scale.cwiseInverse().asDiagonal() * c * scale.cwiseInverse().asDiagonal();
+  }
+
+  /// Standard errors of `ks` where each value has this noise; infinite where they are not determined at all.
+  VectorXd std_errors(const std::vector<std::size_t>& ks, double sigma_mm) const {
+    const auto c = unit_covariance(ks);
+    if (!c) return VectorXd::Constant(static_cast<Eigen::Index>(ks.size()), INFINITY);
+    return sigma_mm * c->diagonal().cwiseMax(0).cwiseSqrt();
   }
 
   /// Of the linear model, within what may change in a round. Twice: the first solution shows the noise.
@@ -299,9 +305,8 @@ class Fit {
     for (Eigen::Index i = 0; i < a.cols(); ++i) {
       const std::size_t k = ks[static_cast<std::size_t>(i)];
       const double at = x_[static_cast<Eigen::Index>(k)], size = magnitude(k, x_);
-      const bool bounded = !unknowns_[k].adds() && unknowns_[k].kind != UnknownKind::gain_ratio;
-      lowest[i] = std::max(unknowns_[k].lowest() - at, bounded ? -kFall * size : -kRise);
-      highest[i] = std::min(unknowns_[k].highest() - at, kRise * (bounded ? size : 1));
+      lowest[i] = std::max(unknowns_[k].lowest() - at, -kFall * size);
+      highest[i] = std::min(unknowns_[k].highest() - at, kRise * size);
     }
     Solution out;
     for (double sigma : {10 * kNoise_mm, 0.0}) {
@@ -529,15 +534,6 @@ class Fit {
     out_.rms_um = all.rms().value_or(0);
   }
 
-  /// Covariance of the active unknowns.
-  MatrixXd covariance(const std::vector<std::size_t>& ks) const {
-    const MatrixXd a = columns(ks);
-    const VectorXd scale = a.colwise().norm();
-    const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
-    const MatrixXd c = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
-    return sigma_mm_ * sigma_mm_ * scale.cwiseInverse().asDiagonal() * c * scale.cwiseInverse().asDiagonal();
-  }
-
   struct Told {
     double value = 0, start = 0;
     std::optional<double> std_error;
@@ -644,7 +640,7 @@ class Fit {
     const std::vector<std::size_t> ks = active();
     std::map<std::size_t, double> std_of;
     if (!ks.empty()) {
-      covariance_ = covariance(ks);
+      covariance_ = sigma_mm_ * sigma_mm_ * unit_covariance(ks).value();
       for (std::size_t i = 0; i < ks.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(i);
         index_[ks[i]] = at;
