@@ -29,13 +29,13 @@ using machine::Job;
 
 constexpr double kStep = 0.2;        // of a scale, for slopes: large against the noise of a grid
 constexpr double kLeastStep = 0.05;  // of a scale, that corrects slopes: less is the noise of a grid
-constexpr double kNear = 0.1;        // of a scale, from where slopes were found
-constexpr int kSlopeRounds = 2;
+constexpr double kNear = 0.2;        // of a force or a compliance, from where slopes were found
+constexpr int kSlopeRounds = 1;
 constexpr double kRise = 3, kFall = 0.8;  // of a scale, a round
 constexpr double kDetermined = 0.5;       // greatest standard error of a scale, of its start or of its value
-constexpr double kDetermined_mm = 0.02;  // of an offset, mm; of a drift, mm a day
-constexpr double kNoise_mm = 0.002;      // of a measured size, before anything is known of it
-constexpr double kWorth = 2;             // values that this is worth beside those of the residuals
+constexpr double kDetermined_mm = 0.02;   // of an offset, mm; of a drift, mm a day
+constexpr double kNoise_mm = 0.002;       // of a measured size, before anything is known of it
+constexpr double kWorth = 1;              // values that this is worth beside those of the residuals
 constexpr double kLeastNoise_mm = 0.0002;
 constexpr double kHuber = 2.5;                // standard deviations: normal noise stays least squares
 constexpr double kBoundedVariance = 0.97756;  // of a standard normal variable bounded to +- kHuber
@@ -188,25 +188,27 @@ class Fit {
     return std::ranges::any_of(fitted_, [&](std::size_t i) { return rows_[i].job == j; });
   }
 
-  /// Whether a scale has moved since slopes were found: standard errors are theirs.
+  /// Whether forces or compliances, which multiply each other, have moved since slopes were found. Sizes are linear in
+  /// the lag.
   bool far_from_slopes() const {
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
-      if (!unknowns_[k].adds() &&
+      if (!unknowns_[k].adds() && !of_motion(unknowns_[k].kind) &&
           std::abs(x_[static_cast<Eigen::Index>(k)] - slopes_at_[static_cast<Eigen::Index>(k)]) >
               kNear * magnitude(k, slopes_at_))
         return true;
     return false;
   }
 
-  /// Slopes of all sizes by the unknowns of the model.
+  /// Slopes of all sizes by the unknowns of the model; those of the motion the first time.
   void find_slopes() {
     slopes_at_ = x_;
-    slope_.assign(jobs_.size(), {});
+    const bool first = slope_.empty();
+    slope_.resize(jobs_.size());
     for (std::size_t j = 0; j < jobs_.size(); ++j) {
       show("slopes", j, jobs_.size());
-      slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
+      if (first) slope_[j] = MatrixXd::Zero(static_cast<Eigen::Index>(jobs_[j].features.size()), size());
       if (!is_fitted_job(j)) continue;
-      find_slopes_of(j, true);
+      if (first) find_slopes_of(j, true);
       if (bends(sizes_[j])) find_slopes_of(j, false);
     }
   }
@@ -277,17 +279,23 @@ class Fit {
     return unknowns_[k].kind == UnknownKind::gain_ratio ? kDetermined : kDetermined * std::max(1.0, 1 + x);
   }
 
-  /// Standard errors of `ks` where each value has this noise; infinite where they are not determined at all.
-  VectorXd std_errors(const std::vector<std::size_t>& ks, double sigma_mm) const {
+  /// Covariance of `ks` where each value has a variance of 1; nothing where they are not determined at all.
+  std::optional<MatrixXd> unit_covariance(const std::vector<std::size_t>& ks) const {
     const MatrixXd a = columns(ks);
-    VectorXd scale = a.colwise().norm();
-    VectorXd out = VectorXd::Constant(a.cols(), INFINITY);
-    if ((scale.array() <= 0).any() || a.rows() < a.cols()) return out;
+    const VectorXd scale = a.colwise().norm();
+    if ((scale.array() <= 0).any() || a.rows() < a.cols()) return std::nullopt;
     const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
     Eigen::ColPivHouseholderQR<MatrixXd> qr;
-    if (qr.setThreshold(kRank).compute(unit).rank() < a.cols()) return out;
-    const MatrixXd covariance = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
-    return sigma_mm * covariance.diagonal().cwiseMax(0).cwiseSqrt().cwiseQuotient(scale);
+    if (qr.setThreshold(kRank).compute(unit).rank() < a.cols()) return std::nullopt;
+    const MatrixXd c = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
+    return scale.cwiseInverse().asDiagonal() * c * scale.cwiseInverse().asDiagonal();
+  }
+
+  /// Standard errors of `ks` where each value has this noise; infinite where they are not determined at all.
+  VectorXd std_errors(const std::vector<std::size_t>& ks, double sigma_mm) const {
+    const auto c = unit_covariance(ks);
+    if (!c) return VectorXd::Constant(static_cast<Eigen::Index>(ks.size()), INFINITY);
+    return sigma_mm * c->diagonal().cwiseMax(0).cwiseSqrt();
   }
 
   /// Of the linear model, within what may change in a round. Twice: the first solution shows the noise.
@@ -297,9 +305,8 @@ class Fit {
     for (Eigen::Index i = 0; i < a.cols(); ++i) {
       const std::size_t k = ks[static_cast<std::size_t>(i)];
       const double at = x_[static_cast<Eigen::Index>(k)], size = magnitude(k, x_);
-      const bool bounded = !unknowns_[k].adds() && unknowns_[k].kind != UnknownKind::gain_ratio;
-      lowest[i] = std::max(unknowns_[k].lowest() - at, bounded ? -kFall * size : -kRise);
-      highest[i] = std::min(unknowns_[k].highest() - at, kRise * (bounded ? size : 1));
+      lowest[i] = std::max(unknowns_[k].lowest() - at, -kFall * size);
+      highest[i] = std::min(unknowns_[k].highest() - at, kRise * size);
     }
     Solution out;
     for (double sigma : {10 * kNoise_mm, 0.0}) {
@@ -527,15 +534,6 @@ class Fit {
     out_.rms_um = all.rms().value_or(0);
   }
 
-  /// Covariance of the active unknowns.
-  MatrixXd covariance(const std::vector<std::size_t>& ks) const {
-    const MatrixXd a = columns(ks);
-    const VectorXd scale = a.colwise().norm();
-    const MatrixXd unit = a * scale.cwiseInverse().asDiagonal();
-    const MatrixXd c = (unit.transpose() * unit).ldlt().solve(MatrixXd::Identity(a.cols(), a.cols()));
-    return sigma_mm_ * sigma_mm_ * scale.cwiseInverse().asDiagonal() * c * scale.cwiseInverse().asDiagonal();
-  }
-
   struct Told {
     double value = 0, start = 0;
     std::optional<double> std_error;
@@ -642,7 +640,7 @@ class Fit {
     const std::vector<std::size_t> ks = active();
     std::map<std::size_t, double> std_of;
     if (!ks.empty()) {
-      covariance_ = covariance(ks);
+      covariance_ = sigma_mm_ * sigma_mm_ * unit_covariance(ks).value();
       for (std::size_t i = 0; i < ks.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(i);
         index_[ks[i]] = at;
@@ -705,8 +703,8 @@ class Fit {
   struct Refusal {
     std::string note, suggestion;
   };
-  std::map<std::size_t, Refusal> refused_;  ///< by unknown
-  std::set<std::size_t> taken_again_;       ///< unknowns that are not taken once more
+  std::map<std::size_t, Refusal> refused_;     ///< by unknown
+  std::set<std::size_t> taken_again_;          ///< unknowns that are not taken once more
   std::map<std::size_t, Eigen::Index> index_;  ///< of an active unknown in covariance_
   MatrixXd covariance_;
   double sigma_mm_ = kNoise_mm;

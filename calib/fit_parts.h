@@ -81,17 +81,17 @@ struct FitPartsResult {
 ///
 ///   size = prediction(job; forces, stiffness, gains) + s_f offset(tool, clamping) + drift t
 ///
-/// with s_f = Feature::size_per_diameter(). Forces, compliance and lag are scales, in which sizes are linear; one offset for
-/// every tool and every clamping of it (jobs whose [tool.N] are alike). Every parameter that the measurements do not
-/// determine, together with those before it (offsets, common gain, force, radial force, root stiffness, edge force,
-/// gains apart), to half of its value stays at its start.
+/// with s_f = Feature::size_per_diameter(). Forces, compliance and lag are scales, in which sizes are linear; one
+/// offset for every tool and every clamping of it (jobs whose [tool.N] are alike). Every parameter that the
+/// measurements do not determine, together with those before it (offsets, common gain, force, radial force, root
+/// stiffness, edge force, gains apart), to half of its value stays at its start.
 ///
 /// Ceres solves a linear model of the predictions, whose slopes come from predictions of coarser() jobs
 /// (by gains in rigid coupling; none by forces and stiffness where bending changes sizes by less than
-/// 0.1 um), found again where a scale has moved by more than a fifth; predictions at its solution correct it (Broyden),
-/// until the step is below a twentieth of the standard errors. The figures are of the last predictions, which are of
-/// the jobs as they are. Source of the update: Broyden, A class of methods for solving nonlinear simultaneous
-/// equations, Math. Comp. 19 (1965).
+/// 0.1 um), those by forces and stiffness found again where one has moved by more than a fifth; predictions at its
+/// solution correct it (Broyden), until the step is below a twentieth of the standard errors. The figures are of the
+/// last predictions, which are of the jobs as they are. Source of the update: Broyden, A class of methods for solving
+/// nonlinear simultaneous equations, Math. Comp. 19 (1965).
 ///
 /// Errors [parts-unmeasured]: no feature of any job has a measured value. Throws InputError.
 FitPartsResult fit_parts(const std::vector<machine::Job>& jobs, const FitPartsOptions& options);

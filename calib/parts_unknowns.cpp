@@ -66,8 +66,6 @@ bool has_edges(const Job& job) {
   return false;
 }
 
-bool always(const Job&) { return true; }
-
 /// Offsets of every clamping of every tool that made something.
 void add_offsets(const std::vector<Job>& jobs, const std::vector<PartsRow>& rows, std::vector<PartsUnknown>& out) {
   const auto clampings = clampings_of(jobs);
@@ -167,7 +165,7 @@ std::vector<PartsRow> rows_of(const std::vector<Job>& jobs, const std::vector<st
 std::vector<PartsUnknown> unknowns_of(const std::vector<Job>& jobs, const std::vector<PartsRow>& rows) {
   std::vector<PartsUnknown> out;
   add_offsets(jobs, rows, out);
-  const std::vector<bool> gains = jobs_where(jobs, has_gains), all = jobs_where(jobs, always);
+  const std::vector<bool> gains = jobs_where(jobs, has_gains), all(jobs.size(), true);
   if (any(gains))
     out.push_back(
         {.kind = UnknownKind::gain, .name = "position_gain_per_s", .of_job = gains, .apply = [](Job& job, double x) {
@@ -210,8 +208,7 @@ std::string suggestion_for(const PartsUnknown& u, const PartsUnknown* other) {
     case UnknownKind::radial:
       return "radial and tangential forces apart: walls cut with thin and with thick radial depths by a long tool";
     case UnknownKind::edge:
-      return fmt::format(
-          "edge and cutting forces apart: feeds per tooth over a range of three or more with a long tool");
+      return "edge and cutting forces apart: feeds per tooth over a range of three or more with a long tool";
     case UnknownKind::root:
       return fmt::format(
           "{}{}: the same feature with a short and a long stick-out, the short one with a heavy cut of a "

@@ -13,8 +13,8 @@
 namespace camber::machine {
 namespace {
 
-constexpr std::array<std::string_view, 3> kSeparatorWords{",", ";", "tab"};
-constexpr std::array kSeparators{',', ';', '\t'};
+constexpr std::array<std::string_view, 4> kSeparatorWords{"auto", ",", ";", "tab"};
+constexpr std::array kSeparators{'\0', ',', ';', '\t'};
 constexpr std::array<std::string_view, 3> kMeasuredUnitWords{"mm", "um", "inch"};
 constexpr std::array kMmPerUnit{1.0, 1e-3, 25.4};
 
@@ -53,9 +53,21 @@ std::vector<Cell> cells_of(std::string_view line, std::size_t offset, char separ
   return out;
 }
 
+/// What a header is separated by: a semicolon or a tab where it has one.
+char separator_of(std::string_view header) {
+  const std::size_t at = header.find_first_of(";\t");
+  return at == std::string_view::npos ? ',' : header[at];
+}
+
+/// What inspection reports write for a value that is not there: dashes, n/a.
+bool is_missing(std::string_view text) {
+  return text.empty() || text.find_first_not_of('-') == std::string_view::npos || text == "n/a" || text == "N/A";
+}
+
 class Reader {
  public:
-  Reader(const SourceText& source, const MeasuredColumns& columns) : source_(source), columns_(columns) {}
+  Reader(const SourceText& source, const MeasuredColumns& columns)
+      : source_(source), columns_(columns), separator_(columns.separator) {}
 
   std::vector<MeasuredValue> run() {
     const std::string& text = source_.text();
@@ -76,7 +88,8 @@ class Reader {
 
   void take(std::string_view line, std::size_t offset) {
     if (trimmed(line).empty() || trimmed(line).starts_with('#')) return;
-    const std::vector<Cell> cells = cells_of(line, offset, columns_.separator);
+    if (separator_ == 0) separator_ = separator_of(line);
+    const std::vector<Cell> cells = cells_of(line, offset, separator_);
     headed_ ? row(cells, offset) : header(cells, offset);
   }
 
@@ -84,6 +97,7 @@ class Reader {
     headed_ = true;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < cells.size(); ++i) column_[cells[i].text] = i, names.push_back(cells[i].text);
+    width_ = cells.size();
     for (const std::string& wanted : {columns_.feature, columns_.value})
       if (!column_.contains(wanted))
         fail(offset, fmt::format("the header has no column \"{}\"; it has {}", wanted, fmt::join(names, ", ")));
@@ -97,8 +111,10 @@ class Reader {
 
   std::optional<double> number(const std::vector<Cell>& cells, const std::string& name) {
     const Cell* c = cell(cells, name);
-    if (!c) return std::nullopt;
-    const auto value = parse_number(c->text);
+    if (!c || is_missing(c->text)) return std::nullopt;
+    std::string text = c->text;
+    if (text.find('.') == std::string::npos) std::ranges::replace(text, ',', '.');  // a decimal comma
+    const auto value = parse_number(text);
     if (!value)
       found_.add(source_.diagnostic(Severity::error, c->offset,
                                     fmt::format("{} is \"{}\"; a number was expected", name, c->text),
@@ -111,6 +127,15 @@ class Reader {
       const Cell* c = cell(cells, name);
       return c ? c->text : std::string();
     };
+    if (std::any_of(cells.begin() + std::min(width_, cells.size()), cells.end(),
+                    [](const Cell& c) { return !c.text.empty(); })) {
+      found_.add(source_.diagnostic(Severity::error, cells[width_].offset,
+                                    fmt::format("the row has {} cells, the header {}; as many were expected (numbers "
+                                                "with a decimal comma: in quotes, or columns separated by ;)",
+                                                cells.size(), width_),
+                                    "measured-table"));
+      return;
+    }
     const auto value = number(cells, columns_.value);
     if (!value) return;
     MeasuredValue v{.feature = text(columns_.feature),
@@ -128,7 +153,9 @@ class Reader {
 
   const SourceText& source_;
   const MeasuredColumns& columns_;
+  char separator_;
   std::map<std::string, std::size_t> column_;
+  std::size_t width_ = 0;  ///< cells of the header
   bool headed_ = false;
   Diagnostics found_;
   std::vector<MeasuredValue> out_;

@@ -11,12 +11,13 @@ namespace camber::machine {
 struct MeasuredColumns {
   std::string feature = "feature", part = "part", date = "date", value = "value_mm";
   std::string nominal = "nominal_mm", lower = "lower_mm", upper = "upper_mm";  ///< used where the header has them
-  char separator = ',';
+  char separator = 0;      ///< 0: a semicolon or a tab where the header has one, else a comma
   double mm_per_unit = 1;  ///< unit of value, nominal and limits
 };
 
-/// Rows of a CSV; lines that begin with # are comments. `feature` and `value` must be there; a row without a value is
-/// left out (a feature that was not measured is no zero). Throws InputError with file:line:column [measured-table].
+/// Rows of a CSV; lines that begin with # are comments. `feature` and `value` must be there; a row without a value
+/// (nothing, dashes, n/a) is left out: a feature that was not measured is no zero. Decimal points or commas. Throws
+/// InputError with file:line:column [measured-table].
 std::vector<MeasuredValue> read_measured_csv(const std::string& path, const MeasuredColumns& columns);
 
 /// A column map: `feature = "Feature name"`, likewise part, date, value, nominal, lower, upper; `separator`; `unit` =

@@ -1,4 +1,6 @@
 // Measured values from QIF 2 results.
+#include <algorithm>
+#include <cctype>
 #include <map>
 #include <string_view>
 
@@ -93,8 +95,10 @@ class QifFile {
     each_below(root_, "", [&](const pugi::xml_node& node) {
       if (const auto id = node.attribute("id")) by_id_[id.value()] = node;
     });
-    each_below(root_, "LinearUnit", [&](const pugi::xml_node& unit) {
-      if (std::string_view(text_of(unit, "UnitName")).find("inch") != std::string_view::npos) mm_per_unit_ = kMmPerInch;
+    each_below(root_, "PrimaryUnits", [&](const pugi::xml_node& units) {  // OtherUnits are of single values
+      std::string name = text_of(child_of(units, "LinearUnit"), "UnitName");
+      std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+      if (name.find("inch") != std::string::npos) mm_per_unit_ = kMmPerInch;
     });
   }
 

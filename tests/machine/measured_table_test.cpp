@@ -71,6 +71,22 @@ TEST(Qif, ByteOrderMarkAndPrefixesAreMet) {
   EXPECT_EQ(read_qif(folder.write("p.qif", text)).size(), 16u);
 }
 
+TEST(Qif, SizesAreInThePrimaryUnitOfTheFile) {
+  const TempFolder folder;
+  const std::string text = SourceText::read(tests::unpacked_data("qif/plate_01.qif")).text();
+  const auto with_units = [&](const std::string& primary, const std::string& other) {
+    std::string out = text;
+    const auto unit = [](const std::string& name) {
+      return "<LinearUnit><UnitName>" + name + "</UnitName></LinearUnit>";
+    };
+    out.insert(out.find('>', out.find("<QIFDocument")) + 1, "<FileUnits><PrimaryUnits>" + unit(primary) +
+                                                                "</PrimaryUnits><OtherUnits>" + unit(other) +
+                                                                "</OtherUnits></FileUnits>");
+    return read_qif(folder.write("u.qif", out)).front().value_mm;
+  };
+  EXPECT_NEAR(with_units("Inch", "mm") / with_units("mm", "inch"), 25.4, 1e-12);
+}
+
 TEST(Qif, BadFilesSayWhatWasExpected) {
   EXPECT_EQ(qif_message("<a></b>"),
             "m.qif:1:6: error: not well-formed XML (Start-end tags mismatch); QIF results were expected [qif-results]\n"
@@ -112,7 +128,26 @@ TEST(MeasuredCsv, ColumnMapNamesColumnsUnitAndSeparator) {
   EXPECT_NEAR(values[0].value_mm, 12.7, 1e-12);
 }
 
+/// As a spreadsheet of a country with decimal commas saves a table.
+TEST(MeasuredCsv, ReadsDecimalCommasBetweenSemicolonsAndValuesThatAreNotThere) {
+  const TempFolder folder;
+  const auto values = read_measured_csv(
+      folder.write("m.csv", "feature;part;date;value_mm\r\nA;1;;3,9965\r\nB;1;;---\r\nC;1;;N/A\r\nD;1;;-0.5\r\n"), {});
+  ASSERT_EQ(values.size(), 2u);
+  EXPECT_EQ(values[0].value_mm, 3.9965);
+  EXPECT_EQ(values[1].feature, "D");
+  EXPECT_EQ(values[1].value_mm, -0.5);
+  EXPECT_EQ(read_measured_csv(folder.write("q.csv", "feature,value_mm\nA,\"4,25\"\n"), {}).front().value_mm, 4.25);
+}
+
 TEST(MeasuredCsv, BadTablesSayWhatWasExpected) {
+  EXPECT_EQ(csv_message("feature,value_mm\nA,3,996\n"),
+            "m.csv:2:5: error: the row has 3 cells, the header 2; as many were expected (numbers with a decimal comma: "
+            "in quotes, or columns separated by ;) [measured-table]\n"
+            "    A,3,996\n        ^");
+  EXPECT_EQ(csv_message("feature;value_mm\nA;1.234,5\n"),
+            "m.csv:2:3: error: value_mm is \"1.234,5\"; a number was expected [measured-table]\n"
+            "    A;1.234,5\n      ^");
   EXPECT_EQ(csv_message(""),
             "m.csv:1:1: error: is empty; a header that names the columns was expected [measured-table]");
   EXPECT_EQ(csv_message("name,value\nA,1\n"),
