@@ -177,22 +177,6 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
   return out;
 }
 
-// --- levers that are not used ----------------------------------------------------------------------------------------
-
-namespace {
-
-constexpr double kPays = 0.1;        // of the 95th percentile
-constexpr double kLongest = 2;       // of the given machine time, in addition
-constexpr double kWanted = 0.9;      // of the tolerance
-constexpr double kShortest = 0.005;  // of the given machine time: what takes less is what the shifts do
-
-/// The best round's observations, and what the best shifts leave of them.
-struct Left {
-  ShiftPath path;
-  std::vector<Observation> of_path;
-  std::vector<double> mm, area_mm2;
-};
-
 Left left_by_shifts(const Task& task, const State& state) {
   const Version& version = *state.active;
   const Trial& best = *state.best.trial;
@@ -203,6 +187,13 @@ Left left_by_shifts(const Task& task, const State& state) {
   for (const Observation& o : out.of_path) out.area_mm2.push_back(o.area_mm2);
   return out;
 }
+
+namespace {
+
+constexpr double kPays = 0.1;        // of the 95th percentile
+constexpr double kLongest = 2;       // of the given machine time, in addition
+constexpr double kWanted = 0.9;      // of the tolerance
+constexpr double kShortest = 0.005;  // of the given machine time: what takes less is what the shifts do
 
 std::optional<LeverOutlook> of_second_cuts(const Task& task, const State& state, const Left& left) {
   if (state.active->repeated || !task.job.workpiece) return std::nullopt;
