@@ -27,12 +27,12 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
                               std::vector<std::size_t> chosen, double allowed_s);
 
 /// The best round's observations, and what the best shifts leave of them.
-struct Left {
+struct LeftByShifts {
   ShiftPath path;
   std::vector<Observation> of_path;
   std::vector<double> mm, area_mm2;
 };
-Left left_by_shifts(const Task& task, const State& state);
+LeftByShifts left_by_shifts(const Task& task, const State& state);
 
 /// Returns lower feeds, and where the part yields and no run is cut again second cuts, each with up to 200 % more
 /// machine time than given, if it is expected to take a tenth or more off the 95th percentile of the best round. No

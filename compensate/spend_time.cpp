@@ -53,7 +53,7 @@ double default_percent(const Task& task, const State& state) {
 
 /// Lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves.
 bool feeds_pay(const Task& task, const State& state, double percent) {
-  Left left = left_by_shifts(task, state);
+  LeftByShifts left = left_by_shifts(task, state);
   const double budget_s = percent / 100 * task.given.time_s;
   const FeedChoice choice =
       state.active->feeds->choose(left.path, left.of_path, left.mm, budget_s, wanted_mm(task, state));
