@@ -21,6 +21,7 @@ constexpr int kRungRounds = 2;
 constexpr int kBudgetRounds = 6;
 constexpr double kDefaultBudget_percent = 10;  // where the job names no levers
 constexpr double kPays = 0.1;        // of the 95th percentile: what feeds by default must be expected to bring
+constexpr double kPaysOver = 0.05;   // the same where the tolerance is missed
 constexpr double kFollows = 1.05;    // times it: shifts that belong to new feeds need bring less than others
 constexpr double kTimeRoom = 0.003;  // by which the shifts that follow a plan of feeds may exceed a budget
 constexpr int kPlannings = 5;        // of feeds, until their text fits into the budget
@@ -51,13 +52,15 @@ double default_percent(const Task& task, const State& state) {
   return kDefaultBudget_percent * own_s / program.feed.time_s;
 }
 
-/// Lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves.
+/// Lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves; over the
+/// tolerance a twentieth.
 bool feeds_pay(const Task& task, const State& state, double percent) {
   LeftByShifts left = left_by_shifts(task, state);
   const double budget_s = percent / 100 * task.given.time_s;
   const FeedChoice choice =
       state.active->feeds->choose(left.path, left.of_path, left.mm, budget_s, wanted_mm(task, state));
-  return choice.error_mm <= (1 - kPays) * p95_of(left.mm, left.area_mm2);
+  const double pays = met(task, state) ? kPays : kPaysOver;
+  return choice.error_mm <= (1 - pays) * p95_of(left.mm, left.area_mm2);
 }
 
 /// One round with new feeds. Changes of feed cost more on the machine than their plan has it: until the text fits into
