@@ -30,10 +30,15 @@ constexpr double kMinExtra = 0.005;  // less extra time is not worth a round
 constexpr double kWanted = 0.9;      // of the tolerance: what feeds and second cuts are chosen for
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
+/// The tolerance is kept, whatever the depth is: the guard comes later.
+bool kept(const Task& task, const State& state) {
+  return within_tolerance(figures_of(task, *state.best.trial), task.job.compensation);
+}
+
 /// The least error within a time is wanted: the job gives the time, or the tolerance is kept and the goal is the best.
 bool wants_least(const Task& task, const State& state) {
   const auto& asked = task.job.compensation;
-  return task.budget_percent() || (asked.levers.empty() && asked.goal == machine::Goal::best && met(task, state));
+  return task.budget_percent() || (asked.levers.empty() && asked.goal == machine::Goal::best && kept(task, state));
 }
 
 double wanted_mm(const Task& task, const State& state) {
@@ -43,7 +48,7 @@ double wanted_mm(const Task& task, const State& state) {
 /// Extra time where the job names no levers, in percent of the machine time: a tenth of it where the tolerance takes
 /// that, else of the time of the moves to compensate.
 double default_percent(const Task& task, const State& state) {
-  if (!met(task, state)) return kDefaultBudget_percent;
+  if (!kept(task, state)) return kDefaultBudget_percent;
   const simulate::SimulatedProgram& program = *state.active->source.program;
   const std::span<const removal::Stamp> stamps = program.path.stamps;
   double own_s = 0;
@@ -59,7 +64,7 @@ bool feeds_pay(const Task& task, const State& state, double percent) {
   const double budget_s = percent / 100 * task.given.time_s;
   const FeedChoice choice =
       state.active->feeds->choose(left.path, left.of_path, left.mm, budget_s, wanted_mm(task, state));
-  const double pays = met(task, state) ? kPays : kPaysOver;
+  const double pays = kept(task, state) ? kPays : kPaysOver;
   return choice.error_mm <= (1 - pays) * p95_of(left.mm, left.area_mm2);
 }
 
