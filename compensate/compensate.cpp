@@ -1,5 +1,7 @@
 #include "compensate/compensate.h"
 
+#include <array>
+
 #include <fmt/format.h>
 
 #include "compensate/judge.h"
@@ -11,17 +13,8 @@
 namespace camber::compensate {
 
 std::string to_string(Stop stop) {
-  switch (stop) {
-    case Stop::tolerance:
-      return "tolerance";
-    case Stop::stalled:
-      return "stalled";
-    case Stop::depth_limit:
-      return "depth_limit";
-    case Stop::rounds:
-      break;
-  }
-  return "rounds";
+  constexpr std::array kNames{"tolerance", "stalled", "rounds", "depth_limit"};
+  return kNames[static_cast<std::size_t>(stop)];
 }
 
 CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 #include "compensate/row_form.h"
 #include "removal/form_error.h"
@@ -64,40 +63,37 @@ void ErrorSplit::give_to_guard(double free_correctable_um) {
 namespace {
 
 /// Returns what a slowly varying shift adds to the errors that the least squares leave, so that their 95th percentile
-/// becomes less: iteratively reweighted, errors count the more the nearer they are to that percentile.
+/// becomes less: an error weighs the more the nearer it is to that percentile (iteratively reweighted least squares).
 std::vector<double> centring_mm(const ShiftPath& path, std::span<const Observation> observations,
-                                const std::vector<double>& left_mm, FitShiftOptions options) {
-  options = {.smoothing_mm = std::max(kCentring_mm, options.smoothing_mm),
-             .decay_mm = options.decay_mm,
-             .max_shift_mm = std::numeric_limits<double>::infinity()};
+                                const std::vector<double>& left_mm, double decay_mm) {
+  const FitShiftOptions slow{kCentring_mm, decay_mm, std::numeric_limits<double>::infinity()};
   ShiftPath rest = path;
   rest.set_shifts(std::vector<Vec3>(path.points().size(), Vec3::Zero()));
   std::vector<Observation> asked(observations.begin(), observations.end());
-  std::vector<double> area, added(left_mm.size(), 0.0), best = added, sum = left_mm;
-  for (const Observation& o : observations) area.push_back(o.area_mm2);
-  const auto depth_of = [&](const std::vector<double>& error_mm) {
-    std::vector<std::pair<double, double>> depths;
-    for (std::size_t i = 0; i < area.size(); ++i) depths.emplace_back(-error_mm[i], area[i]);
-    return depth_p999(std::move(depths), std::accumulate(area.begin(), area.end(), 0.0));
-  };
-  const double deepest = kDeeper * depth_of(sum);
-  double least = removal::error_figures(sum, area).p95, now = least;
-  for (int k = 0; k < kCentrings && now > 0; ++k) {
+  std::vector<double> area(left_mm.size()), added(left_mm.size(), 0.0), best = added, sum = left_mm;
+  std::vector<std::pair<double, double>> depths(left_mm.size());
+  double whole = 0, least = std::numeric_limits<double>::infinity(), deepest = least;
+  for (std::size_t i = 0; i < area.size(); ++i) whole += area[i] = observations[i].area_mm2;
+  for (int k = 0; k <= kCentrings; ++k) {
+    const double p95 = removal::error_figures(sum, area).p95;
+    for (std::size_t i = 0; i < sum.size(); ++i) depths[i] = {-sum[i], area[i]};
+    const double depth = depth_p999(depths, whole);
+    if (k == 0) deepest = kDeeper * depth;
+    if (p95 < least && depth <= deepest) {
+      least = p95;
+      best = added;
+    }
+    if (p95 <= 0) break;
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      const double x = std::pow(sum[i] / now, 2);
+      const double x = std::pow(sum[i] / p95, 4);
       asked[i].error_mm = left_mm[i];
-      asked[i].weight = 1 + kNearWeight * (x < 1 ? x * x : 1 / (x * x));
+      asked[i].weight = 1 + kNearWeight * std::min(x, 1 / x);
     }
     ShiftPath moved = rest;
-    fit_shift(moved, asked, options);
+    fit_shift(moved, asked, slow);
     for (std::size_t i = 0; i < asked.size(); ++i) {
       added[i] += kCentringStep * (asked[i].normal.dot(moved.shift_at(asked[i].place)) - added[i]);
       sum[i] = left_mm[i] + added[i];
-    }
-    now = removal::error_figures(sum, area).p95;
-    if (now < least && depth_of(sum) <= deepest) {
-      least = now;
-      best = added;
     }
   }
   return best;
@@ -108,23 +104,20 @@ std::vector<double> centring_mm(const ShiftPath& path, std::span<const Observati
 std::vector<Observation> without_row_form(const ShiftPath& path, std::span<const Observation> observations,
                                           const FitShiftOptions& options) {
   std::vector<Observation> out(observations.begin(), observations.end());
-  std::vector<double> form =
-      row_form_mm(path, observations, left_by(path, observations, stiff(options)), options.smoothing_mm);
-  const auto subtract = [&] {
+  const auto subtract = [&](const std::vector<double>& form) {
     for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i].error_mm = observations[i].error_mm - form[i];
-      out[i].form_mm = form[i];
+      out[i].error_mm -= form[i];
+      out[i].form_mm += form[i];
     }
   };
-  subtract();
+  for (Observation& o : out) o.form_mm = 0;
+  subtract(row_form_mm(path, observations, left_by(path, observations, stiff(options)), options.smoothing_mm));
   if (!options.centred || out.empty()) return out;
   FitShiftOptions free = options;
   free.bounded = false;
   std::vector<double> left = left_by(path, out, free);
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] += form[i];
-  const std::vector<double> added = centring_mm(path, observations, left, options);
-  for (std::size_t i = 0; i < form.size(); ++i) form[i] += added[i];
-  subtract();
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] += out[i].form_mm;
+  subtract(centring_mm(path, observations, left, options.decay_mm));
   return out;
 }
 

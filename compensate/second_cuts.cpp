@@ -177,7 +177,16 @@ SecondCutVersion version_with(const Task& task, Version& given, const std::vecto
   return out;
 }
 
-// --- levers that are not used ----------------------------------------------------------------------------------------
+LeftByShifts left_by_shifts(const Task& task, const State& state) {
+  const Version& version = *state.active;
+  const Trial& best = *state.best.trial;
+  LeftByShifts out{version.path, best.observed.of_path(), {}, {}};
+  out.path.set_shifts(best.shifts);
+  FeedLever::set_fractions(out.path, best.fractions);
+  out.mm = left_by_shift_mm(out.path, out.of_path, fit_options(task, version));
+  for (const Observation& o : out.of_path) out.area_mm2.push_back(o.area_mm2);
+  return out;
+}
 
 namespace {
 
@@ -186,25 +195,7 @@ constexpr double kLongest = 2;       // of the given machine time, in addition
 constexpr double kWanted = 0.9;      // of the tolerance
 constexpr double kShortest = 0.005;  // of the given machine time: what takes less is what the shifts do
 
-/// The best round's observations, and what the best shifts leave of them.
-struct Left {
-  ShiftPath path;
-  std::vector<Observation> of_path;
-  std::vector<double> mm, area_mm2;
-};
-
-Left left_by_shifts(const Task& task, const State& state) {
-  const Version& version = *state.active;
-  const Trial& best = *state.best.trial;
-  Left out{version.path, best.observed.of_path(), {}, {}};
-  out.path.set_shifts(best.shifts);
-  FeedLever::set_fractions(out.path, best.fractions);
-  out.mm = left_by_shift_mm(out.path, out.of_path, fit_options(task, version));
-  for (const Observation& o : out.of_path) out.area_mm2.push_back(o.area_mm2);
-  return out;
-}
-
-std::optional<LeverOutlook> of_second_cuts(const Task& task, const State& state, const Left& left) {
+std::optional<LeverOutlook> of_second_cuts(const Task& task, const State& state, const LeftByShifts& left) {
   if (state.active->repeated || !task.job.workpiece) return std::nullopt;
   const std::vector<PassRun> runs =
       pass_runs(*state.active->source.program, state.active->compensated, left.path, left.of_path, left.mm);
@@ -218,7 +209,7 @@ std::optional<LeverOutlook> of_second_cuts(const Task& task, const State& state,
   return out;
 }
 
-std::optional<LeverOutlook> of_lower_feeds(const Task& task, const State& state, const Left& left) {
+std::optional<LeverOutlook> of_lower_feeds(const Task& task, const State& state, const LeftByShifts& left) {
   if (task.feed_unusable) return std::nullopt;
   const simulate::SimulatedProgram& program = *state.active->source.program;
   Diagnostics unusable;
@@ -241,7 +232,7 @@ std::optional<LeverOutlook> of_lower_feeds(const Task& task, const State& state,
 
 std::vector<LeverOutlook> unused_levers(const Task& task, const State& state) {
   std::vector<LeverOutlook> out;
-  const Left left = left_by_shifts(task, state);
+  const LeftByShifts left = left_by_shifts(task, state);
   const double now_um = state.rounds[state.best.round].error_um.p95;
   for (const auto& found : {of_second_cuts(task, state, left), of_lower_feeds(task, state, left)})
     if (found && found->p95_um <= (1 - kPays) * now_um && found->extra_s >= kShortest * task.given.time_s)

@@ -26,7 +26,13 @@ struct SecondCutVersion {
 SecondCutVersion version_with(const Task& task, Version& given, const std::vector<PassRun>& runs,
                               std::vector<std::size_t> chosen, double allowed_s);
 
-// Levers that would bring more, where the tolerance is missed
+/// The best round's observations, and what the best shifts leave of them.
+struct LeftByShifts {
+  ShiftPath path;
+  std::vector<Observation> of_path;
+  std::vector<double> mm, area_mm2;
+};
+LeftByShifts left_by_shifts(const Task& task, const State& state);
 
 /// Returns lower feeds, and where the part yields and no run is cut again second cuts, each with up to 200 % more
 /// machine time than given, if it is expected to take a tenth or more off the 95th percentile of the best round. No

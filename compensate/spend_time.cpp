@@ -21,6 +21,8 @@ constexpr int kRungRounds = 2;
 constexpr int kBudgetRounds = 6;
 constexpr double kDefaultBudget_percent = 10;  // where the job names no levers
 constexpr double kPays = 0.1;        // of the 95th percentile: what feeds by default must be expected to bring
+constexpr double kPaysOver = 0.05;   // the same where the tolerance is missed
+constexpr double kFollows = 1.05;    // times it: shifts that belong to new feeds need bring less than others
 constexpr double kTimeRoom = 0.003;  // by which the shifts that follow a plan of feeds may exceed a budget
 constexpr int kPlannings = 5;        // of feeds, until their text fits into the budget
 constexpr double kReserve = 0.98;    // of the time that should fit by the last plan
@@ -28,10 +30,15 @@ constexpr double kMinExtra = 0.005;  // less extra time is not worth a round
 constexpr double kWanted = 0.9;      // of the tolerance: what feeds and second cuts are chosen for
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
+/// The tolerance is kept, whatever the depth is: the guard comes later.
+bool kept(const Task& task, const State& state) {
+  return within_tolerance(figures_of(task, *state.best.trial), task.job.compensation);
+}
+
 /// The least error within a time is wanted: the job gives the time, or the tolerance is kept and the goal is the best.
 bool wants_least(const Task& task, const State& state) {
   const auto& asked = task.job.compensation;
-  return task.budget_percent() || (asked.levers.empty() && asked.goal == machine::Goal::best && met(task, state));
+  return task.budget_percent() || (asked.levers.empty() && asked.goal == machine::Goal::best && kept(task, state));
 }
 
 double wanted_mm(const Task& task, const State& state) {
@@ -41,30 +48,24 @@ double wanted_mm(const Task& task, const State& state) {
 /// Extra time where the job names no levers, in percent of the machine time: a tenth of it where the tolerance takes
 /// that, else of the time of the moves to compensate.
 double default_percent(const Task& task, const State& state) {
-  if (!met(task, state)) return kDefaultBudget_percent;
+  if (!kept(task, state)) return kDefaultBudget_percent;
   const simulate::SimulatedProgram& program = *state.active->source.program;
-  double cutting_s = 0;
-  const auto& stamps = program.path.stamps;
+  const std::span<const removal::Stamp> stamps = program.path.stamps;
+  double own_s = 0;
   for (std::size_t i = 1; i < stamps.size(); ++i)
-    if (!stamps[i].first && state.active->path.contains(stamps[i].move)) cutting_s += stamps[i].t_s - stamps[i - 1].t_s;
-  return kDefaultBudget_percent * cutting_s / program.feed.time_s;
+    if (!stamps[i].first && state.active->path.contains(stamps[i].move)) own_s += stamps[i].t_s - stamps[i - 1].t_s;
+  return kDefaultBudget_percent * own_s / program.feed.time_s;
 }
 
-/// Lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves.
+/// Lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves; over the
+/// tolerance a twentieth.
 bool feeds_pay(const Task& task, const State& state, double percent) {
-  Version& version = *state.active;
-  const Trial& best = *state.best.trial;
-  ShiftPath path = version.path;
-  path.set_shifts(best.shifts);
-  FeedLever::set_fractions(path, best.fractions);
-  const std::vector<Observation> all = best.observed.of_path();
-  const std::vector<double> left_mm = left_by_shift_mm(path, all, fit_options(task, version));
-  std::vector<double> area_mm2;
-  area_mm2.reserve(all.size());
-  for (const Observation& o : all) area_mm2.push_back(o.area_mm2);
+  LeftByShifts left = left_by_shifts(task, state);
   const double budget_s = percent / 100 * task.given.time_s;
-  const double expected_mm = version.feeds->choose(path, all, left_mm, budget_s, wanted_mm(task, state)).error_mm;
-  return expected_mm <= (1 - kPays) * p95_of(left_mm, area_mm2);
+  const FeedChoice choice =
+      state.active->feeds->choose(left.path, left.of_path, left.mm, budget_s, wanted_mm(task, state));
+  const double pays = kept(task, state) ? kPays : kPaysOver;
+  return choice.error_mm <= (1 - pays) * p95_of(left.mm, left.area_mm2);
 }
 
 /// Predicts one round with new feeds. Changes of feed cost more on the machine than their plan has it: until the text
@@ -117,9 +118,10 @@ void lower_feeds(const Task& task, State& state, double percent) {
   const std::size_t before = state.best.round;
   const bool least = wants_least(task, state);
   for (int i = 0; i < (budget ? kBudgetRounds : kRungRounds); ++i) {
-    const bool made = i % 2 == 0 ? step_with_feeds(task, state, percent)
-                                 : shift_pays(task, version, *state.last, state.rounds.back().error_um.p95, 1) &&
-                                       step(task, state, 1, nullptr);
+    const bool made = i % 2 == 0
+                          ? step_with_feeds(task, state, percent)
+                          : shift_pays(task, version, *state.last, kFollows * state.rounds.back().error_um.p95, 1) &&
+                                step(task, state, 1, nullptr);
     if (!made && i % 2 == 0) break;
     if (!made) continue;  // the shifts to these feeds would change little
     const Round &now = state.rounds.back(), &best = state.rounds[state.best.round];

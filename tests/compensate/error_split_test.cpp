@@ -7,6 +7,7 @@
 
 #include "compensate/gouge_guard.h"
 #include "compensate/sensitivity.h"
+#include "removal/form_error.h"
 
 namespace camber::compensate {
 namespace {
@@ -179,6 +180,42 @@ TEST(DepthLimit, LeavesRoomForWhatNoShiftTakesAway) {
   EXPECT_NEAR(default_depth_limit_um(bow.path, bow.observed, {}, 2), 1.25 * 4.5, 0.3);
   EXPECT_EQ(default_depth_limit_um(bow.path, bow.observed, {}, 8), 8);
   EXPECT_EQ(default_depth_limit_um(even.path, even.observed, {}, 2), 2);
+}
+
+/// 95th percentile of what the best shift leaves of a wall, um.
+double left_p95_um(const Wall& wall, const FitShiftOptions& options) {
+  std::vector<double> left_um, area;
+  for (const double left_mm : left_by_shift_mm(wall.path, wall.observed.points, options)) {
+    left_um.push_back(1000 * left_mm);
+    area.push_back(1);
+  }
+  return removal::error_figures(left_um, area).p95;
+}
+
+/// Nine tenths of the height are even, the rest is 10 um deeper: least squares leave 9 um there, the middle 5 um.
+TEST(Centring, BringsALopsidedBowNearTheMiddleOfItsRange) {
+  Wall wall;
+  wall.add([](double, double height) { return height > 0.9 ? -0.010 : 0.0; });
+  EXPECT_NEAR(left_p95_um(wall, {}), 9, 0.3);
+  EXPECT_LT(left_p95_um(wall, {.centred = true}), 7);
+  EXPECT_GE(left_p95_um(wall, {.centred = true}), 5) << "the middle of the range is the least there is";
+}
+
+TEST(Centring, LeavesAnEvenBowAndWhatFewPlacesHaveToLeastSquares) {
+  Wall even, few;
+  even.add([](double, double height) { return 0.010 * (height - 0.5); });
+  few.add([](double x, double height) { return x > 20 && x < 21 && height > 0.5 ? 0.030 : 0.002 * (height - 0.5); });
+  EXPECT_NEAR(left_p95_um(even, {.centred = true}), left_p95_um(even, {}), 0.1);
+  EXPECT_LE(left_p95_um(few, {.centred = true}), left_p95_um(few, {}));
+}
+
+TEST(Centring, GoesNoDeeperThanADefaultLimitHasRoomFor) {
+  Wall wall;  // the middle would be 5 um deep, least squares are 1 um deep
+  wall.add([](double, double height) { return height > 0.9 ? 0.010 : 0.0; });
+  double deepest_mm = 0;
+  for (const double left_mm : left_by_shift_mm(wall.path, wall.observed.points, {.centred = true}))
+    deepest_mm = std::max(deepest_mm, -left_mm);
+  EXPECT_LT(deepest_mm, 0.0013);
 }
 
 TEST(ErrorSplit, NamesTheCauseOfEveryPoint) {
