@@ -2,11 +2,23 @@
 // Compensation of a program: predict it, shift each path point against its error, predict the emitted text again.
 // This is the door of compensate/.
 //
-// Input is a job whose program has been read, timed and checked (simulate/setup.h). Each round finds for every point
-// of the surface the place on the path that generated it (attribution, hidden_rows), fits the shifts of the path to the
-// errors (row_form, fit_shift, row_links, sensitivity, splits), and emits, times, cuts and judges the shifted program
-// (trial, judge). Then the guard lifts the path out of the part and the levers lower feeds (feed_lever) or repeat runs
-// (passes). state.h has the state of all this and says where each step is; docs/compensation.md has the method.
+// Overview
+//
+// Input is a job whose program has been read, timed and checked (simulate/setup.h). Each round has these steps:
+//
+// 1. attribution   finds, for every point of the surface, the place on the path that generated it; hidden_rows gives
+//                  the expected error where a neighbouring row has cut that place away.
+// 2. row_form      subtracts what keeps the same form across a row (the bow of a ball), which no shift removes.
+// 3. fit_shift     fits the shifts of the path nodes (shift_path) to the errors by least squares, smoothly along the
+//                  path and from row to row (row_links), divided by the local sensitivity (sensitivity: a deeper cut
+//                  deflects more). splits decides where lines get more nodes.
+// 4. trial         emits the shifted program (nc/emit), reads the text again, times, cuts and judges it.
+// 5. judge         decides whether another round is worth its prediction, and with which step.
+//
+// Afterwards the guard lifts the path where the surface lies deeper in the part than the limit, the levers lower feeds
+// (feed_lever, feed_choice) or repeat runs (passes) where the job allows it, and judge takes the best round
+// within the limits. remaining_error, error_split, safety, path_quality and uncertainty describe what comes out;
+// verify judges an emitted program from its text. state.h has the state of all this and says where each step is.
 //
 // The reference is error_um: the machined surface minus the one that the commanded path leaves with a rigid tool, along
 // the normal. All lengths are mm unless the name says otherwise. docs/compensation.md has equations and figures.

@@ -1,5 +1,9 @@
 #pragma once
 // Fits the shifts of the path nodes to the form error.
+//
+// Minimizes sum w a (e/g + n.(s - s_old))^2 + mu int |ds/dl|^2 + mu sum_links l |s_a - s_b|^2 / d^2 + kappa int |s|^2
+// with error e, area a, weight w, normal n and sensitivity g of each observation, by conjugate gradients; the exact
+// solution of each chain is the preconditioner. mu follows from the smoothing length and the local mean of w.
 #include <algorithm>
 #include <limits>
 #include <span>
