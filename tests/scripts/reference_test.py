@@ -58,7 +58,7 @@ class Reference(unittest.TestCase):
         self.assert_stale("materials.md")
 
     def test_a_word_of_sinumerik_that_is_refused(self):
-        self.edit("nc/siemens/words.cpp", '"CHF", kAddress, Does::extra, ', '"CHF", kAddress, Does::refused, ')
+        self.edit("nc/siemens/words.cpp", '"CHF CHR", kAddress, Does::extra, ', '"CHF CHR", kAddress, Does::refused, ')
         self.assert_stale("siemens-words.md")
 
     def test_a_code_without_words(self):
