@@ -15,7 +15,6 @@ constexpr double kStiff = 0.02;       // smoothing of a fit that may do almost a
 constexpr double kCentring_mm = 1.0;  // smoothing of a shift beyond the least squares'
 constexpr double kNearWeight = 8;     // weight of errors near the 95th percentile
 constexpr double kCentringStep = 0.5;
-constexpr double kDeeper = 1.1;  // than the least squares leave: what a default depth limit has room for
 constexpr int kCentrings = 8;
 
 /// error + n . (change of the shift), one per observation.
@@ -78,7 +77,7 @@ std::vector<double> centring_mm(const ShiftPath& path, std::span<const Observati
     const double p95 = removal::error_figures(sum, area).p95;
     for (std::size_t i = 0; i < sum.size(); ++i) depths[i] = {-sum[i], area[i]};
     const double depth = depth_p999(depths, whole);
-    if (k == 0) deepest = kDeeper * depth;
+    if (k == 0) deepest = depth;
     if (p95 < least && depth <= deepest) {
       least = p95;
       best = added;

@@ -20,8 +20,7 @@ constexpr std::array kRungs_percent{5.0, 10.0, 15.0, 25.0, 50.0, 100.0, 200.0}; 
 constexpr int kRungRounds = 2;
 constexpr int kBudgetRounds = 6;
 constexpr double kDefaultBudget_percent = 10;  // where the job names no levers
-constexpr double kPays = 0.1;        // of the 95th percentile: what feeds by default must be expected to bring
-constexpr double kPaysOver = 0.05;   // the same where the tolerance is missed
+constexpr double kPays = 0.05;       // of the 95th percentile: what feeds by default must be expected to bring
 constexpr double kFollows = 1.05;    // times it: shifts that belong to new feeds need bring less than others
 constexpr double kTimeRoom = 0.003;  // by which the shifts that follow a plan of feeds may exceed a budget
 constexpr int kPlannings = 5;        // of feeds, until their text fits into the budget
@@ -30,42 +29,14 @@ constexpr double kMinExtra = 0.005;  // less extra time is not worth a round
 constexpr double kWanted = 0.9;      // of the tolerance: what feeds and second cuts are chosen for
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-/// The tolerance is kept, whatever the depth is: the guard comes later.
-bool kept(const Task& task, const State& state) {
-  return within_tolerance(figures_of(task, *state.best.trial), task.job.compensation);
-}
+double wanted_mm(const Task& task) { return task.budget_percent() ? 0.0 : kWanted * task.tolerance_mm(); }
 
-/// The least error within a time is wanted: the job gives the time, or the tolerance is kept and the goal is the best.
-bool wants_least(const Task& task, const State& state) {
-  const auto& asked = task.job.compensation;
-  return task.budget_percent() || (asked.levers.empty() && asked.goal == machine::Goal::best && kept(task, state));
-}
-
-double wanted_mm(const Task& task, const State& state) {
-  return wants_least(task, state) ? 0.0 : kWanted * task.tolerance_mm();
-}
-
-/// Extra time where the job names no levers, in percent of the machine time: a tenth of it where the tolerance takes
-/// that, else of the time of the moves to compensate.
-double default_percent(const Task& task, const State& state) {
-  if (!kept(task, state)) return kDefaultBudget_percent;
-  const simulate::SimulatedProgram& program = *state.active->source.program;
-  const std::span<const removal::Stamp> stamps = program.path.stamps;
-  double own_s = 0;
-  for (std::size_t i = 1; i < stamps.size(); ++i)
-    if (!stamps[i].first && state.active->path.contains(stamps[i].move)) own_s += stamps[i].t_s - stamps[i - 1].t_s;
-  return kDefaultBudget_percent * own_s / program.feed.time_s;
-}
-
-/// Lower feeds are expected to take a tenth or more off the 95th percentile that the best shift leaves; over the
-/// tolerance a twentieth.
+/// Lower feeds are expected to take a twentieth or more off the 95th percentile that the best shift leaves.
 bool feeds_pay(const Task& task, const State& state, double percent) {
   LeftByShifts left = left_by_shifts(task, state);
   const double budget_s = percent / 100 * task.given.time_s;
-  const FeedChoice choice =
-      state.active->feeds->choose(left.path, left.of_path, left.mm, budget_s, wanted_mm(task, state));
-  const double pays = kept(task, state) ? kPays : kPaysOver;
-  return choice.error_mm <= (1 - pays) * p95_of(left.mm, left.area_mm2);
+  const FeedChoice choice = state.active->feeds->choose(left.path, left.of_path, left.mm, budget_s, wanted_mm(task));
+  return choice.error_mm <= (1 - kPays) * p95_of(left.mm, left.area_mm2);
 }
 
 /// Predicts one round with new feeds. Changes of feed cost more on the machine than their plan has it: until the text
@@ -81,7 +52,7 @@ bool step_with_feeds(const Task& task, State& state, double percent) {
   const Prepare choose = [&](std::vector<Observation>& observations) {
     const std::vector<Observation> all = from->observed.of_path();
     const std::vector<double> left = left_by_shift_mm(version.path, all, fit_options(task, version));
-    planned_s = lever.choose(version.path, all, left, plan_s, wanted_mm(task, state)).extra_s;
+    planned_s = lever.choose(version.path, all, left, plan_s, wanted_mm(task)).extra_s;
     version.splits.add_feed_changes(version.path);
     lever.apply_to(observations, version.path, from->fractions);
   };
@@ -116,7 +87,6 @@ void lower_feeds(const Task& task, State& state, double percent) {
   if (!budget && task.job.compensation.levers.empty() && !feeds_pay(task, state, percent)) return;
   state.last = state.best.trial;
   const std::size_t before = state.best.round;
-  const bool least = wants_least(task, state);
   for (int i = 0; i < (budget ? kBudgetRounds : kRungRounds); ++i) {
     const bool made = i % 2 == 0
                           ? step_with_feeds(task, state, percent)
@@ -126,7 +96,7 @@ void lower_feeds(const Task& task, State& state, double percent) {
     if (!made) continue;  // the shifts to these feeds would change little
     const Round &now = state.rounds.back(), &best = state.rounds[state.best.round];
     if (now.machine_time_s <= state.allowed_s && now.error_um.p95 < best.error_um.p95) take(state);
-    if (!least && met(task, state)) break;
+    if (!budget && met(task, state)) break;
   }
   version.feeds_stuck = state.best.round == before;
 }
@@ -185,8 +155,8 @@ bool cut_twice(const Task& task, State& state, double percent) {
   const std::vector<PassRun> runs = runs_after_shifts(task, given);
   const double budget_s = percent / 100 * task.given.time_s;
   const int most = most_passes(task.job);
-  const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm(task, state), most);
-  const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm(task, state), most).size();
+  const std::vector<std::size_t> chosen = choose_passes(runs, budget_s, wanted_mm(task), most);
+  const bool all_fit = chosen.size() == choose_passes(runs, kNoLimit, wanted_mm(task), most).size();
   const auto tried = [&] {
     return std::ranges::any_of(state.versions, [&](const auto& v) { return v->passes() == chosen; });
   };
@@ -211,9 +181,9 @@ void spend_time(const Task& task, State& state) {
   const auto budget = task.budget_percent();
   std::vector<double> rungs(kRungs_percent.begin(), kRungs_percent.end());
   if (budget) rungs = {*budget};
-  if (!budget && task.job.compensation.levers.empty()) rungs = {default_percent(task, state)};
+  if (!budget && task.job.compensation.levers.empty()) rungs = {kDefaultBudget_percent};
   for (const double percent : rungs) {
-    if (!wants_least(task, state) && met(task, state)) return;
+    if (!budget && met(task, state)) return;
     state.allowed_s = (1 + percent / 100 + kTimeRoom) * task.given.time_s;
     const std::size_t before = state.best.round;
     lower_feeds(task, state, percent);
