@@ -1,3 +1,25 @@
+// Static equilibrium of one tooth passing: solves delta = C F(chip(delta)) for one reading of the stock.
+//
+// Overview
+//
+// Unknowns are the lateral deflections at every node of the axis and every rotation step, and of a tool that yields
+// along its axis one axial deflection a step (mm). C is the compliance of tool and holder (mm/N); of a part that bends,
+// C F of its heights is added (balance_part). One solve():
+//
+// 1. place_elements  lists the edge elements of each rotation step, with what the reading tells of their chip: its
+//                    depth, the cap that the tool's motion sets, and how both change with the deflection. The chip is
+//                    the smaller of the two; the tilt of the deflected envelope (lean_mm) lowers the cap and couples a
+//                    step to the steps beside it.
+// 2. balance         sums the forces of a step's elements and gives what is left, C F + run-out - delta, and its
+//                    derivatives by the deflections at the first and the last node, of the step and of its neighbours.
+// 3. solve_coarse    Newton's step: the derivatives at these two nodes stand for all between, so that a step has four
+//                    unknowns (five with the axis) and the turn a cyclic block-tridiagonal system, solved by
+//                    elimination with the last step as a border.
+// 4. advance         gives the step of all nodes; it is halved until what is left falls. Rotation steps that are in
+//                    balance to kExact_mm stay, and are not summed again unless a neighbour moves.
+// 5. creep           where Newton's method swings about a corner of the force: damped steps, as of a tool that creeps.
+//
+// static_cut decides how often the stock is read again. Equations and checks: docs/engagement.md, Static coupling.
 #include "deflection/static_cut.h"
 
 #include <algorithm>

@@ -1,3 +1,20 @@
+// Choice of the tool's direction along a path, as a shortest path through (point, direction).
+//
+// Overview
+//
+// 1. Directions      a grid of directions that the rotary axes reach, with the turn and the time from each to its
+//                    neighbours.
+// 2. knots_of        thins the points: every few millimetres, and where contact or rapid begin and end.
+// 3. ClearDirections marks for every knot the directions in which tool and holder keep their clearance, for several
+//                    overhangs at once.
+// 4. Chooser         finds the path of least cost, in mm: posture_cost (the way times the share of the error that the
+//                    direction lets through), the turn of the rotary axes times degree_cost_mm, the additional time's
+//                    way times kTimeShare, and the way times the error that late axes leave (LagError). Directions
+//                    between knots are interpolated and smoothed. Where the tool is not clear on the way between two
+//                    knots, the step or the direction is barred and the path is found anew.
+// 5. take_cheaper    where axes follow late, compares with the choice that ignores them and with one direction for all.
+//
+// BySurface takes the direction from the surface alone instead: normal, lead and tilt, or Shirase's seed.
 #include "posture/choose.h"
 
 #include <algorithm>

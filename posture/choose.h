@@ -128,7 +128,8 @@ double error_share(double angle_rad);
 /// however it is spread along the path, and the square spreads it.
 double lag_share(double error_mm, const ToolShape& tool);
 
-/// Returns the cost of a direction per mm of path: the fraction of the error, and a penalty for a tip that cuts.
+/// Returns the cost, mm, of a direction on the way to a point: the way times the fraction of the error that reaches the
+/// surface, with a penalty for a tip that cuts.
 double posture_cost(const PathPoint& point, const Vec3& axis, const PostureOptions& options);
 
 struct Postures {
