@@ -119,7 +119,7 @@ TEST(Slotting, TrochoidsLeaveTheSlot) {
     EXPECT_NEAR(run.result.removed_mm3 / closed_mm3, 1, 0.002) << mode;
     EXPECT_LT(run.result.path_depth_um, 5) << mode;
     judge::Question q{{0, 0, -12}, {60, 30, 0}};
-    q.cell = 0.1;
+    q.cell = 0.2;
     q.cutters[1] = {.diameter = 8};
     const judge::Verdict v =
         judge::judge(judge::ProgramReader().read(run.result.text),
