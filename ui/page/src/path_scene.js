@@ -25,8 +25,9 @@ void main() { pixel = vec4(shown, 1.0); }`;
 
 const VIEWS = { oblique: [-0.6, -1, 1.1], top: [0, -1e-4, 1], front: [0, -1, 0], right: [1, 0, 0] };
 export const VIEW_NAMES = Object.keys(VIEWS);
-// Ways drawn while the picture turns; the rest follows when it rests.
-const MOVING = 120000, REST_MS = 160, REACH_PX = 8, CLICK_PX = 4;
+// Ways drawn while the picture turns, at most and at least; the rest follows when it rests. Frames that are longer apart
+// are too slow: the next one draws half as many.
+const MOVING = 120000, FEWEST = 10000, SLOW_MS = 40, REST_MS = 160, REACH_PX = 8, CLICK_PX = 4;
 const EDGES = 60000;  // triangles whose edges are looked for
 const PLACE_mm = 0.01;  // a part that is dragged stands at whole multiples of it
 export const TOOL_COLOURS = [[31, 119, 180], [214, 110, 20], [44, 140, 60], [190, 50, 60], [130, 95, 180], [130, 85, 70], [210, 110, 180], [110, 115, 30], [20, 160, 175]];
@@ -114,13 +115,14 @@ export class PathScene {
       const geometry = new BufferGeometry();
       geometry.setAttribute('position', this.positions);
       geometry.setAttribute('colour', this.colours);
-      geometry.setIndex(new BufferAttribute(pairs(path, i => !this.hidden.has(path.kind[i]) && this.ofTool(i), every), 1));
+      geometry.setIndex(this.ways(every));
       const out = new LineSegments(geometry, material);
       out.frustumCulled = false;
       return out;
     };
     this.lines = lines(1);
-    this.coarse = path.count > MOVING ? lines(Math.ceil(path.count / MOVING)) : this.lines;
+    this.every = Math.ceil(path.count / MOVING);
+    this.coarse = this.every > 1 ? lines(this.every) : this.lines;
     this.things.add(this.lines);
     if (this.coarse !== this.lines) this.things.add(this.coarse);
     this.coarse.visible = this.coarse === this.lines;
@@ -142,15 +144,16 @@ export class PathScene {
 
   ofTool(i) { return this.tool === undefined || this.tool === '' || this.path.tool[i] === Number(this.tool); }
 
+  // What is drawn of the path when only every n-th place counts.
+  ways(every) { return new BufferAttribute(pairs(this.path, i => !this.hidden.has(this.path.kind[i]) && this.ofTool(i), every), 1); }
+
   // Which kinds and tools are drawn.
   show({ rapids, tool }) {
     this.hidden = new Set(rapids ? [] : [RAPID]);
     this.tool = tool;
     if (!this.path) return;
-    const keep = i => !this.hidden.has(this.path.kind[i]) && this.ofTool(i);
-    this.lines.geometry.setIndex(new BufferAttribute(pairs(this.path, keep, 1), 1));
-    if (this.coarse !== this.lines)
-      this.coarse.geometry.setIndex(new BufferAttribute(pairs(this.path, keep, Math.ceil(this.path.count / MOVING)), 1));
+    this.lines.geometry.setIndex(this.ways(1));
+    if (this.coarse !== this.lines) this.coarse.geometry.setIndex(this.ways(this.every));
     this.render();
   }
 
@@ -302,11 +305,19 @@ export class PathScene {
       this.lines.visible = false;
       this.coarse.visible = true;
       clearTimeout(this.resting);
-      this.resting = setTimeout(() => this.rest(), REST_MS);
     }
     this.render();
   }
+  // A frame has been drawn that is not the last one of a motion.
+  moved() {
+    const now = performance.now(), gap_ms = now - this.drawn;
+    this.drawn = now;
+    if (gap_ms > SLOW_MS && this.path.count / this.every > 2 * FEWEST) this.coarse.geometry.setIndex(this.ways(this.every *= 2));
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => this.rest(), REST_MS);
+  }
   rest() {
+    this.drawn = NaN;
     if (this.path && this.coarse !== this.lines) { this.lines.visible = true; this.coarse.visible = false; }
     this.render();
   }
@@ -391,6 +402,7 @@ export class PathScene {
       this.asked = false;
       this.renderer.render(this.scene, this.camera);
       this.frames = (this.frames || 0) + 1;
+      if (this.path && this.coarse !== this.lines && this.coarse.visible) this.moved();
       this.marker.hidden = this.marked === null || this.marked === undefined;
       if (this.marker.hidden) return;
       const p = new Vector3(...this.place.subarray(3 * this.marked, 3 * this.marked + 3)).project(this.camera);
