@@ -1,7 +1,5 @@
 #include "compensate/compensate.h"
 
-#include <array>
-
 #include <fmt/format.h>
 
 #include "compensate/judge.h"
@@ -13,8 +11,17 @@
 namespace camber::compensate {
 
 std::string to_string(Stop stop) {
-  constexpr std::array kNames{"tolerance", "stalled", "rounds", "depth_limit"};
-  return kNames[static_cast<std::size_t>(stop)];
+  switch (stop) {
+    case Stop::tolerance:
+      return "tolerance";
+    case Stop::stalled:
+      return "stalled";
+    case Stop::depth_limit:
+      return "depth_limit";
+    case Stop::rounds:
+      break;
+  }
+  return "rounds";
 }
 
 CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics, const CompensateOptions& options) {

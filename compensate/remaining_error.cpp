@@ -54,11 +54,27 @@ const char* words_of(const CauseFigure& figure) {
 }
 
 double part_of(const ErrorSplit& s, Cause cause) {
-  using E = ErrorSplit;
-  constexpr std::array kParts{&E::correctable_um, &E::guard_um,       &E::bounded_um,
-                              &E::limited_um,     &E::short_range_um, &E::opposed_um,
-                              &E::tip_um,         &E::bow_um,         &E::not_compensated_um};
-  return s.*kParts[static_cast<std::size_t>(cause)];
+  switch (cause) {
+    case Cause::correctable:
+      return s.correctable_um;
+    case Cause::guard:
+      return s.guard_um;
+    case Cause::bounded:
+      return s.bounded_um;
+    case Cause::limited:
+      return s.limited_um;
+    case Cause::short_range:
+      return s.short_range_um;
+    case Cause::opposed:
+      return s.opposed_um;
+    case Cause::tip:
+      return s.tip_um;
+    case Cause::bow:
+      return s.bow_um;
+    case Cause::not_compensated:
+      break;
+  }
+  return s.not_compensated_um;
 }
 
 double fraction_in_band(const std::vector<double>& error_um, const std::vector<double>& area_mm2,
