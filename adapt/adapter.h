@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "adapt/adapt.h"
+#include "adapt/adaptation.h"
 #include "adapt/feed_cells.h"
 #include "adapt/feed_chooser.h"
 #include "adapt/observed_loads.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "nc/emit.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::adapt {
 

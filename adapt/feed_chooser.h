@@ -9,7 +9,7 @@
 #include "adapt/observed_loads.h"
 #include "nc/emit.h"
 #include "nc/move_map.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::adapt {
 

@@ -1,5 +1,5 @@
 // The namespace adapt comes before the function of that name: clang takes it in no other order.
-#include "adapt/adapt.h"
+#include "adapt/adaptation.h"
 
 #include "camber/adapt.h"
 

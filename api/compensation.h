@@ -1,7 +1,7 @@
 #pragma once
 // The work of camber compensate, for whoever makes its predictions in a way of its own.
 #include "camber/compensate.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::api {
 

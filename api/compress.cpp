@@ -8,7 +8,7 @@
 #include "feedmodel/cycle_time.h"
 #include "kinematics/control_options.h"
 #include "nc/language.h"
-#include "repath/compress.h"
+#include "repath/compress/compression.h"
 #include "report/rewrite_summary.h"
 
 namespace camber {

@@ -14,7 +14,7 @@
 #include "machine/job_file.h"
 #include "plausibility/plausibility.h"
 #include "report/copy_summary.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber {
 namespace {

@@ -1,7 +1,7 @@
 #include "camber/fit_force.h"
 
 #include "api/run.h"
-#include "calib/fit_force.h"
+#include "calib/force_fit.h"
 #include "machine/force_law.h"
 #include "report/fit_summary.h"
 

@@ -1,7 +1,7 @@
 #include "camber/fit_modes.h"
 
 #include "api/run.h"
-#include "dynamics/fit_modes.h"
+#include "dynamics/modal_fit.h"
 #include "report/fit_summary.h"
 
 namespace camber {

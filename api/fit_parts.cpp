@@ -5,7 +5,7 @@
 
 #include "api/job.h"
 #include "api/run.h"
-#include "calib/fit_parts.h"
+#include "calib/parts_fit.h"
 #include "report/fit_summary.h"
 
 namespace camber {

@@ -8,7 +8,7 @@
 #include "kinematics/machine_program.h"
 #include "machine/job_file.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::api {
 

@@ -1,5 +1,5 @@
 // The namespace posture comes before the function of that name: clang takes it in no other order.
-#include "posture/posture.h"
+#include "posture/posture_program.h"
 
 #include "camber/posture.h"
 
@@ -20,7 +20,7 @@
 #include "kinematics/control_options.h"
 #include "kinematics/machine_program.h"
 #include "plausibility/plausibility.h"
-#include "repath/post.h"
+#include "repath/post/post_processing.h"
 #include "report/posture_summary.h"
 
 namespace camber {

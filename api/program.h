@@ -3,7 +3,7 @@
 #include "base/diagnostics.h"
 #include "camber/program.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber {
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "api/job.h"
-#include "calib/protocol.h"
+#include "calib/protocol_programs.h"
 #include "calib/test_piece.h"
 
 namespace camber {

@@ -7,7 +7,7 @@
 #include "api/run.h"
 #include "kinematics/control_options.h"
 #include "nc/language.h"
-#include "repath/fastest.h"
+#include "repath/resegment/fastest.h"
 #include "report/rewrite_summary.h"
 
 namespace camber {

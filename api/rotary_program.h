@@ -1,9 +1,9 @@
 #pragma once
 // Programs with rotary axes for camber time and camber feed.
 #include "base/diagnostics.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::api {
 

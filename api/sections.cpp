@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "api/section_run.h"
+#include "api/merged_sections.h"
 
 namespace camber {
 namespace {

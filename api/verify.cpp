@@ -6,9 +6,9 @@
 
 #include "api/prediction.h"
 #include "base/output_file.h"
-#include "compensate/verify.h"
+#include "compensate/verify_program.h"
 #include "machine/assumptions.h"
-#include "report/summary.h"
+#include "report/figures_json.h"
 #include "report/verdict_text.h"
 
 namespace camber {

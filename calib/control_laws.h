@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/fit_limits.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::calib {
 

@@ -7,7 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "calib/trace.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::calib {

@@ -10,7 +10,7 @@
 #include "calib/fit_limits.h"
 #include "calib/trace.h"
 #include "feedmodel/timed_path.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::calib {
 

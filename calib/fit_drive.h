@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calib/trace.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::calib {
 

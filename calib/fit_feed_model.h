@@ -10,7 +10,7 @@
 #include "calib/fit_drive.h"
 #include "calib/stretch.h"
 #include "calib/trace.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::calib {

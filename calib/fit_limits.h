@@ -7,7 +7,7 @@
 #include "calib/feed_accuracy.h"
 #include "calib/fit_drive.h"
 #include "feedmodel/motion_plan.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::calib {

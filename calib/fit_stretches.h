@@ -7,7 +7,7 @@
 
 #include "calib/fit_feed_model.h"
 #include "calib/stretch.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::calib {
 

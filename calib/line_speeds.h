@@ -12,7 +12,7 @@
 #include "calib/fit_limits.h"
 #include "calib/stretch.h"
 #include "feedmodel/segment.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::calib {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/fit_parts.h"
+#include "calib/parts_fit.h"
 
 namespace camber::calib {
 

@@ -8,7 +8,7 @@
 #include "calib/stretch.h"
 #include "calib/trace.h"
 #include "feedmodel/path_tracker.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::calib {

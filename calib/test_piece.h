@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::calib {
 

@@ -8,7 +8,7 @@
 #include "calib/trace.h"
 #include "feedmodel/timed_path.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::calib {
 

@@ -12,7 +12,7 @@
 #include "kinematics/chain.h"
 #include "machine/job_file.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::checks {
 

@@ -8,7 +8,7 @@
 
 #include "base/convex_distance.h"
 #include "checks/tool_outline.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/tool.h"
 
 namespace camber::checks {

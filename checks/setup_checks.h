@@ -7,7 +7,7 @@
 #include "base/diagnostics.h"
 #include "machine/job_file.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "nc/summary.h"
 #include "removal/tool_path.h"
 

@@ -4,7 +4,7 @@
 #include "machine/job_file.h"
 #include "motion/simulated_program.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::checks {
 

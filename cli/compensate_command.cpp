@@ -18,7 +18,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "cli/rounds_progress.h"
-#include "compensate/verify.h"
+#include "compensate/verify_program.h"
 #include "machine/compensation_settings.h"
 #include "report/joined_json.h"
 

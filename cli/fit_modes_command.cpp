@@ -12,7 +12,7 @@
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/outputs.h"
-#include "dynamics/fit_modes.h"
+#include "dynamics/modal_fit.h"
 
 namespace camber::cli {
 namespace {

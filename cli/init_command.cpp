@@ -20,10 +20,10 @@
 #include "kinematics/control_options.h"
 #include "kinematics/travel_check.h"
 #include "machine/assumptions.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/machine_presets.h"
 #include "machine/material_presets.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "nc/tool_names.h"
 #include "report/job_proposal.h"
 

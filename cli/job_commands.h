@@ -7,7 +7,7 @@
 #include "camber/compensate.h"
 #include "camber/predict.h"
 #include "cli/command_line.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::cli {
 

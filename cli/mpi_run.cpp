@@ -25,7 +25,7 @@
 #include <mpi.h>
 
 #include "api/compensation.h"
-#include "api/section_run.h"
+#include "api/merged_sections.h"
 #include "base/output_file.h"
 #include "cli/progress.h"
 #include "distribute/shared_prediction.h"

@@ -14,7 +14,7 @@
 #include "cli/mpi_run.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "distribute/sections.h"
+#include "distribute/path_sections.h"
 #include "report/joined_json.h"
 
 namespace camber::cli {

@@ -32,7 +32,7 @@ if(CAMBER_UNITY AND Python3_FOUND)
 endif()
 
 # Names of theirs stand in headers that others of their folder include.
-set(CAMBER_COMPILED_ALONE report/page_bundle.cpp ui/page_bundle.cpp ui/server.cpp tests/calib/fit_stretches_test.cpp tests/repath/resegment_test.cpp)
+set(CAMBER_COMPILED_ALONE report/page_bundle.cpp ui/workbench_bundle.cpp ui/server.cpp tests/calib/fit_stretches_test.cpp tests/repath/resegment_test.cpp)
 
 # camber_compile_together(TARGET HEADERS): files of a group have no local name in common. HEADERS: the target whose
 # precompiled headers it takes.

@@ -6,7 +6,7 @@
 #include "compensate/attribution.h"
 #include "compensate/feed_choice.h"
 #include "compensate/shift_path.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::compensate {

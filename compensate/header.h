@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "machine/job_file.h"
 
 namespace camber::compensate {

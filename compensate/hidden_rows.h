@@ -6,7 +6,7 @@
 #include "compensate/attribution.h"
 #include "compensate/shift_path.h"
 #include "nc/move_map.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "simulate/setup.h"
 
 namespace camber::compensate {

@@ -9,7 +9,7 @@
 #include "compensate/fit_shift.h"
 #include "compensate/shift_path.h"
 #include "nc/repeat.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::compensate {
 

@@ -11,7 +11,7 @@
 #include "compensate/attribution.h"
 #include "machine/job_file.h"
 #include "removal/form_error.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::compensate {
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "compensate/feed_lever.h"
 #include "compensate/row_links.h"
 #include "compensate/sensitivity.h"

@@ -4,7 +4,7 @@
 
 #include "base/stage.h"
 #include "copymill/operation.h"
-#include "repath/raster.h"
+#include "repath/raster/raster.h"
 
 namespace camber::copymill {
 namespace {

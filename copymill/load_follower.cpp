@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "removal/engagement.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::copymill {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "repath/fit.h"
+#include "repath/compress/fit.h"
 
 namespace camber::copymill {
 

@@ -60,7 +60,8 @@ PathPiece part_of(const PathPiece& piece, double from_mm, double to_mm, double i
 
 Vec3 rounded(const Vec3& p, double increment_mm);
 
-/// Fits few lines and arcs to points, rounded to increments (repath/fit.h); steep stretches stay lines between points.
+/// Fits few lines and arcs to points, rounded to increments (repath/compress/fit.h); steep stretches stay lines between
+/// points.
 std::vector<PathPiece> pieces_of(const std::vector<Vec3>& points, bool closed, const PieceOptions& options);
 
 }  // namespace camber::copymill

@@ -14,7 +14,7 @@
 #include "copymill/part_check.h"
 #include "copymill/path_piece.h"
 #include "copymill/standing.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "removal/cutter.h"
 #include "removal/tool_path.h"
 

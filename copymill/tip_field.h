@@ -5,13 +5,13 @@
 #include "base/geometry.h"
 #include "base/triangle_mesh.h"
 #include "removal/cutter.h"
-#include "repath/drop_cutter.h"
+#include "repath/raster/drop_cutter.h"
 
 namespace camber::copymill {
 
 /// Lowest height of the tip above each point at which the cutter stays an allowance away from the part, measured along
 /// the normal. Exact but for rounding: a cutter grown by the allowance (its rounding and its radius alike) is lowered
-/// onto the mesh (repath/drop_cutter.h), and its tip is the allowance lower than the tool's own.
+/// onto the mesh (repath/raster/drop_cutter.h), and its tip is the allowance lower than the tool's own.
 class TipField {
  public:
   static constexpr double kNothingBelow = -std::numeric_limits<double>::infinity();

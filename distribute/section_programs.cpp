@@ -1,4 +1,4 @@
-#include "distribute/sections.h"
+#include "distribute/path_sections.h"
 
 #include <algorithm>
 #include <limits>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "distribute/sections.h"
+#include "distribute/path_sections.h"
 #include "machine/job_file.h"
 
 namespace camber::distribute {

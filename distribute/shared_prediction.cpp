@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "distribute/sections.h"
+#include "distribute/path_sections.h"
 
 namespace camber::distribute {
 

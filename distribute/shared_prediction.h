@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::distribute {
 
@@ -25,8 +25,8 @@ struct CrewFigures {
 };
 
 /// The predictions of a crew, one after the other. Each process of it sweeps and solves a section
-/// (distribute/sections.h), and all merge. The same bytes for every size of the crew; in the last digits, and in static
-/// coupling by what kSettled_mm allows, others than simulate::predict()'s.
+/// (distribute/path_sections.h), and all merge. The same bytes for every size of the crew; in the last digits, and in
+/// static coupling by what kSettled_mm allows, others than simulate::predict()'s.
 ///
 /// In static coupling a path with as many pieces as the one before, as the rounds of a compensation have it, begins its
 /// rounds from the stock that the other has left and how its tool was bent, instead of what a straight cutter leaves.

@@ -1,4 +1,4 @@
-#include "dynamics/fit_modes.h"
+#include "dynamics/modal_fit.h"
 
 #include <algorithm>
 #include <array>

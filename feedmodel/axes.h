@@ -8,7 +8,7 @@
 #include "feedmodel/segment_motion.h"
 #include "kinematics/joint_map.h"
 #include "kinematics/joints.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::feedmodel {
 

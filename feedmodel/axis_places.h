@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/geometry.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {

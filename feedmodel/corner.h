@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/geometry.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {

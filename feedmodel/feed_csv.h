@@ -6,7 +6,7 @@
 #include "base/diagnostics.h"
 #include "base/output_file.h"
 #include "feedmodel/timed_path.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {

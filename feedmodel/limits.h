@@ -6,7 +6,7 @@
 #include "base/geometry.h"
 #include "feedmodel/segment.h"
 #include "kinematics/joint_map.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::feedmodel {
 

@@ -28,7 +28,7 @@
 
 #include "feedmodel/lookahead.h"
 #include "feedmodel/segment_motion.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {

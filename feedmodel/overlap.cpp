@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::feedmodel {
 namespace {

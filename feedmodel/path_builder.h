@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "feedmodel/segment.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/geometry.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::feedmodel {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "machine/cycle.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {

@@ -7,7 +7,7 @@
 #include "base/geometry.h"
 #include "kinematics/feed_meaning.h"
 #include "kinematics/joint_map.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::feedmodel {
 

@@ -9,7 +9,7 @@
 
 #include "base/geometry.h"
 #include "base/tool_pose.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::feedmodel {

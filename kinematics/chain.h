@@ -19,7 +19,7 @@
 
 #include "base/tool_pose.h"
 #include "kinematics/joints.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::kinematics {
 

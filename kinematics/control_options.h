@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/emit.h"
 #include "nc/interpreter.h"
 #include "nc/rotary.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::kinematics {

@@ -6,7 +6,7 @@
 #include "base/tool_pose.h"
 #include "kinematics/chain.h"
 #include "kinematics/joints.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::kinematics {

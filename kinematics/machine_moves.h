@@ -1,6 +1,6 @@
 #pragma once
 // The moves of a program as the machine runs them.
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::kinematics {

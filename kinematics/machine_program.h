@@ -11,7 +11,7 @@
 #include "machine/job_file.h"
 #include "nc/emit.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::kinematics {
 

@@ -4,7 +4,7 @@
 
 #include "base/diagnostics.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::kinematics {
 

@@ -12,7 +12,7 @@
 #include "base/tool_pose.h"
 #include "kinematics/joint_map.h"
 #include "kinematics/joints.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::kinematics {

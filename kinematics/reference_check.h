@@ -1,9 +1,9 @@
 #pragma once
 // Ways to reference points that the machine file does not give.
 #include "base/diagnostics.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::kinematics {
 

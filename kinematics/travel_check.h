@@ -1,9 +1,9 @@
 #pragma once
 // Whether the joints of a program stay within the travel and the speed of their axes.
 #include "base/diagnostics.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::kinematics {
 

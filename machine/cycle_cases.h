@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::machine {
 

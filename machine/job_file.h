@@ -9,7 +9,7 @@
 #include "machine/adapt_settings.h"
 #include "machine/compensation_settings.h"
 #include "machine/features.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/material.h"
 #include "machine/simulation_settings.h"
 #include "machine/tool.h"

@@ -2,7 +2,7 @@
 // [kinematics], the tables of the rotary axes and [[body]]. Internal to machine/.
 #include <string>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/toml_table.h"
 
 namespace camber::machine {

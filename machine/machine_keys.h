@@ -4,7 +4,7 @@
 
 #include "machine/cycle.h"
 #include "machine/kinematics.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/number_key.h"
 
 namespace camber::machine {

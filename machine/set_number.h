@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::machine {
 

@@ -26,7 +26,7 @@ struct Simulation {
   Coupling coupling = Coupling::static_;
   std::optional<Collisions> collisions;  ///< not given: error; a warning where moves of the program are left out
   double rotation_step_rad = kPi / 180.0;
-  double envelope_step_mm = 0;  ///< sample spacing along the profile; 0: chosen for the tool (simulate/predict.h)
+  double envelope_step_mm = 0;  ///< sample spacing along the profile; 0: chosen for the tool (simulate/predict_path.h)
   std::optional<double> max_memory_GB;  ///< not given: what the machine has (simulate/memory.h)
 };
 

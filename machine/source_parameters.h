@@ -1,6 +1,6 @@
 #pragma once
 // Parameters as a control's own list has them, under [source] in machine.toml.
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/toml_table.h"
 
 namespace camber::machine {

@@ -1,9 +1,9 @@
 #pragma once
 // Checks of a program on a machine before it runs.
 #include "base/diagnostics.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::motion {
 

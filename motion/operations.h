@@ -5,7 +5,7 @@
 
 #include "machine/simulation_settings.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::motion {
 

@@ -8,7 +8,7 @@
 #include "kinematics/machine_program.h"
 #include "machine/job_file.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "removal/tool_path.h"
 
 namespace camber::motion {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "nc/reporter.h"
 
 namespace camber::nc {

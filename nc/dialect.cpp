@@ -6,7 +6,7 @@
 
 #include "nc/dialects.h"
 #include "nc/modal_codes.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 namespace {

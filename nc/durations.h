@@ -1,7 +1,7 @@
 #pragma once
 // Programmed durations of moves: by F alone, without the control's limits.
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "nc/reporter.h"
 
 namespace camber::nc {

@@ -12,7 +12,7 @@
 #include "base/diagnostics.h"
 #include "base/geometry.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

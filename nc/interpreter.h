@@ -35,7 +35,7 @@
 #include "nc/dialect.h"
 #include "nc/move.h"
 #include "nc/offsets.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "nc/rotary.h"
 
 namespace camber::nc {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

@@ -13,7 +13,7 @@
 #include "base/diagnostics.h"
 #include "nc/interpreter.h"
 #include "nc/language_id.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

@@ -2,7 +2,7 @@
 // Arguments of macro calls (G65, G66): letters into local variables.
 #include <span>
 
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "nc/variables.h"
 
 namespace camber::nc {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/material.h"
 #include "machine/simulation_settings.h"
 #include "machine/tool.h"

@@ -12,7 +12,7 @@
 #include "base/units.h"
 #include "checks/collisions.h"
 #include "checks/flute_reach.h"
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "copymill/copy_milling.h"
 #include "feedmodel/cycle_time.h"
 #include "kinematics/control_options.h"
@@ -20,8 +20,8 @@
 #include "machine/job_file.h"
 #include "machine/number_key.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
-#include "simulate/predict.h"
+#include "nc/program_text.h"
+#include "simulate/predict_path.h"
 
 namespace camber::plan {
 namespace {

@@ -12,7 +12,7 @@
 #include "machine/job_file.h"
 #include "machine/tool_proposal.h"
 #include "removal/form_error.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::plausibility {
 

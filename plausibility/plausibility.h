@@ -6,7 +6,7 @@
 
 #include "base/diagnostics.h"
 #include "machine/job_file.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::plausibility {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kinematics/chain.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "posture/path_points.h"
 #include "posture/surroundings.h"
 

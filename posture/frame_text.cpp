@@ -3,7 +3,7 @@
 
 #include "base/units.h"
 #include "nc/emit/number_style.h"
-#include "posture/posture.h"
+#include "posture/posture_program.h"
 
 namespace camber::posture {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "posture/choose.h"
 
 namespace camber::posture {

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "removal/cutter.h"
-#include "repath/drop_cutter.h"
+#include "repath/raster/drop_cutter.h"
 
 namespace camber::posture {
 namespace {

@@ -1,4 +1,4 @@
-#include "posture/posture.h"
+#include "posture/posture_program.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "base/triangle_mesh.h"
 #include "removal/stock.h"
 #include "simulate/job_stock.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::posture {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/geometry.h"
 #include "base/triangle_mesh.h"
 #include "checks/machine_solids.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/tool.h"
 
 namespace camber::posture {

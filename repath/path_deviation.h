@@ -3,11 +3,11 @@
 #include <span>
 #include <vector>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/interpreter.h"
 #include "nc/move.h"
-#include "repath/compress.h"
-#include "repath/post.h"
+#include "repath/compress/compression.h"
+#include "repath/post/post_processing.h"
 
 namespace camber::repath {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::repath {
 

@@ -6,8 +6,8 @@
 
 #include "nc/emit/number_style.h"
 #include "nc/emit/text_rules.h"
-#include "repath/compress.h"
-#include "repath/resegment.h"
+#include "repath/compress/compression.h"
+#include "repath/resegment/resegmentation.h"
 
 namespace camber::repath {
 

@@ -7,7 +7,7 @@
 #include "base/json.h"
 #include "base/numbers.h"
 #include "base/units.h"
-#include "report/summary.h"
+#include "report/figures_json.h"
 
 namespace camber::report {
 

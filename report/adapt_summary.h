@@ -2,7 +2,7 @@
 // The figures of camber adapt: JSON, text for a terminal, and the page.
 #include <string>
 
-#include "adapt/adapt.h"
+#include "adapt/adaptation.h"
 #include "machine/adapt_settings.h"
 
 namespace camber::report {

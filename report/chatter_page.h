@@ -2,7 +2,7 @@
 // What a page shows of chatter: a table of the operations, and the lobes of those that are nearest to it.
 #include "machine/job_file.h"
 #include "report/html_report.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::report {
 

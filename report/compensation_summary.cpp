@@ -9,7 +9,7 @@
 #include "base/json.h"
 #include "base/units.h"
 #include "report/figure_rows.h"
-#include "report/summary.h"
+#include "report/figures_json.h"
 #include "report/verdict_text.h"
 
 namespace camber::report {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/json.h"
-#include "report/summary.h"
+#include "report/figures_json.h"
 
 namespace camber::report {
 

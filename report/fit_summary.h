@@ -8,10 +8,10 @@
 #include "calib/block_time.h"
 #include "calib/cross_validate.h"
 #include "calib/fit_feed_model.h"
-#include "calib/fit_force.h"
-#include "calib/fit_parts.h"
 #include "calib/fit_stretches.h"
-#include "dynamics/fit_modes.h"
+#include "calib/force_fit.h"
+#include "calib/parts_fit.h"
+#include "dynamics/modal_fit.h"
 
 namespace camber::report {
 

@@ -8,7 +8,7 @@
 #include "base/geometry.h"
 #include "deflection/tooth_pass.h"
 #include "machine/job_file.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::report {
 

@@ -6,7 +6,7 @@
 
 #include "base/output_file.h"
 #include "report/base64.h"
-#include "report/form_error.h"
+#include "report/form_error_files.h"
 
 namespace camber::report {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "report/surface_samples.h"
 
 namespace camber::report {

@@ -8,7 +8,7 @@
 #include "machine/tool_proposal.h"
 #include "machine/workpiece.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "nc/summary.h"
 
 namespace camber::report {

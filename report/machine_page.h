@@ -8,7 +8,7 @@
 
 #include "base/triangle_mesh.h"
 #include "kinematics/pose_track.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "report/html_report.h"
 
 namespace camber::report {

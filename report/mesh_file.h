@@ -8,7 +8,7 @@
 #include "base/triangle_mesh.h"
 #include "machine/job_file.h"
 #include "removal/stock.h"
-#include "report/form_error.h"
+#include "report/form_error_files.h"
 #include "report/surface_mesh.h"
 
 namespace camber::report {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "machine/job_file.h"
 #include "report/html_report.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "feedmodel/timed_path.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::report {
 

@@ -9,7 +9,7 @@
 #include "base/json.h"
 #include "base/numbers.h"
 #include "plan/joined_runs.h"
-#include "report/summary.h"
+#include "report/figures_json.h"
 
 namespace camber::report {
 

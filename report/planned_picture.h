@@ -1,7 +1,7 @@
 #pragma once
 // The path as the control plans it, with the actual feed: corners rounded, dog-leg rapids.
 #include "kinematics/machine_program.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 #include "report/path_picture.h"
 

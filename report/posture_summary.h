@@ -7,7 +7,7 @@
 #include "kinematics/pose_track.h"
 #include "machine/job_file.h"
 #include "nc/five_axis_words.h"
-#include "posture/posture.h"
+#include "posture/posture_program.h"
 
 namespace camber::report {
 

@@ -10,8 +10,8 @@
 
 #include "report/chatter_page.h"
 #include "report/feature_results.h"
+#include "report/figures_json.h"
 #include "report/histogram_svg.h"
-#include "report/summary.h"
 #include "report/verdict_text.h"
 #include "simulate/verdict.h"
 

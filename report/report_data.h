@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "base/diagnostics.h"
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "removal/stock.h"
-#include "report/form_error.h"
+#include "report/form_error_files.h"
 #include "report/html_report.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "simulate/traced.h"
 
 namespace camber::report {

@@ -8,11 +8,11 @@
 
 #include "base/triangle_mesh.h"
 #include "nc/interpreter.h"
-#include "repath/compress.h"
-#include "repath/fastest.h"
+#include "repath/compress/compression.h"
 #include "repath/path_deviation.h"
-#include "repath/post.h"
-#include "repath/raster.h"
+#include "repath/post/post_processing.h"
+#include "repath/raster/raster.h"
+#include "repath/resegment/fastest.h"
 #include "report/html_report.h"
 #include "report/path_card.h"
 

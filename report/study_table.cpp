@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/numbers.h"
-#include "report/summary.h"
+#include "report/figures_json.h"
 
 namespace camber::report {
 

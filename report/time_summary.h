@@ -7,7 +7,7 @@
 #include "calib/cycle_accuracy.h"
 #include "feedmodel/timed_path.h"
 #include "kinematics/pose_track.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 #include "report/cycle_page.h"
 

@@ -9,7 +9,7 @@
 #include "feedmodel/timed_path.h"
 #include "kinematics/chain.h"
 #include "kinematics/pose_track.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "nc/move.h"
 
 namespace camber::report {

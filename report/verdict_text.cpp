@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "report/summary.h"
+#include "report/figures_json.h"
 
 namespace camber::report {
 namespace {

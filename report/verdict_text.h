@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "compensate/compensate.h"
-#include "compensate/verify.h"
+#include "compensate/compensate_path.h"
+#include "compensate/verify_program.h"
 #include "machine/compensation_settings.h"
 
 namespace camber::report {

@@ -13,7 +13,7 @@
 #include "base/diagnostics.h"
 #include "dynamics/stability_table.h"
 #include "dynamics/tool_lobes.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

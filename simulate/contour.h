@@ -1,7 +1,7 @@
 #pragma once
 // Contour error: the effect of servo lag and corner rounding on the surface, without deflection.
 #include "motion/path_stretch.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

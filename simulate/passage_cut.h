@@ -4,7 +4,7 @@
 
 #include "dynamics/stability_table.h"
 #include "machine/job_file.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

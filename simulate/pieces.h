@@ -12,7 +12,7 @@
 #include "motion/path_stretch.h"
 #include "removal/stock.h"
 #include "simulate/cut.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "simulate/setup.h"
 
 namespace camber::simulate {

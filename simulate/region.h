@@ -4,7 +4,7 @@
 #include <span>
 
 #include "removal/form_error.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

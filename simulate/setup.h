@@ -9,7 +9,7 @@
 #include "base/diagnostics.h"
 #include "machine/job_file.h"
 #include "removal/height_map.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

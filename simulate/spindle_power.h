@@ -1,8 +1,8 @@
 #pragma once
 // Comparison of cutting power and spindle power.
 #include "base/diagnostics.h"
-#include "machine/machine.h"
-#include "simulate/predict.h"
+#include "machine/machine_model.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

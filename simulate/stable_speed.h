@@ -4,7 +4,7 @@
 
 #include "machine/job_file.h"
 #include "simulate/chatter_margins.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

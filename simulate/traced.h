@@ -5,7 +5,7 @@
 
 #include "feedmodel/timed_path.h"
 #include "machine/job_file.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "base/diagnostics.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "removal/form_error.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

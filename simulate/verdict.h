@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 

@@ -7,7 +7,7 @@
 
 #include "nc/emit/number_style.h"
 #include "nc/emit/text_rules.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

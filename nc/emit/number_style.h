@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

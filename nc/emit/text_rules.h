@@ -11,7 +11,7 @@
 #include "nc/emit/arc_rounding.h"
 #include "nc/emit/number_style.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

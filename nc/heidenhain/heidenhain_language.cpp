@@ -4,7 +4,7 @@
 #include <array>
 
 #include "nc/heidenhain/cursor.h"
-#include "nc/heidenhain/reader.h"
+#include "nc/heidenhain/klartext_reader.h"
 
 namespace camber::nc::heidenhain {
 namespace {

@@ -12,7 +12,7 @@
 #include "nc/canned_cycles.h"
 #include "nc/durations.h"
 #include "nc/heidenhain/heidenhain_language.h"
-#include "nc/heidenhain/reader.h"
+#include "nc/heidenhain/klartext_reader.h"
 
 namespace camber::nc::heidenhain {
 

@@ -8,7 +8,7 @@
 #include "base/units.h"
 #include "nc/frames.h"
 #include "nc/heidenhain/heidenhain_language.h"
-#include "nc/heidenhain/tree.h"
+#include "nc/heidenhain/klartext_tree.h"
 #include "nc/write/five_axis_text.h"
 
 namespace camber::nc::heidenhain {

@@ -12,7 +12,7 @@
 #include "nc/interpreter.h"
 #include "nc/offsets.h"
 #include "nc/reporter.h"
-#include "nc/siemens/block_words.h"
+#include "nc/siemens/siemens_block_words.h"
 #include "nc/siemens/values.h"
 #include "nc/tool_names.h"
 

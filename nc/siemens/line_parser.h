@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "nc/siemens/tree.h"
+#include "nc/siemens/siemens_tree.h"
 
 namespace camber::nc::siemens {
 

@@ -6,7 +6,7 @@
 #include "nc/durations.h"
 #include "nc/reporter.h"
 #include "nc/siemens/line_parser.h"
-#include "nc/siemens/sequencer.h"
+#include "nc/siemens/siemens_sequencer.h"
 
 namespace camber::nc::siemens {
 namespace {

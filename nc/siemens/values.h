@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "base/geometry.h"
-#include "nc/siemens/tree.h"
+#include "nc/siemens/siemens_tree.h"
 
 namespace camber::nc::siemens {
 

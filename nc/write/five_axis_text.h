@@ -1,6 +1,7 @@
 #pragma once
 // How a language writes programs with rotary axes: tool-centre-point control, a frame for one direction of the tool,
-// blocks that become one or several lines. repath/post.h decides what is written, and posture/; a language says how.
+// blocks that become one or several lines. repath/post/post_processing.h decides what is written, and posture/; a
+// language says how.
 #include <algorithm>
 #include <cstdint>
 #include <initializer_list>
@@ -18,7 +19,7 @@
 #include "nc/emit/number_style.h"
 #include "nc/emit/text_rules.h"
 #include "nc/move.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::nc {
 

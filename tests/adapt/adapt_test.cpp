@@ -1,4 +1,4 @@
-#include "adapt/adapt.h"
+#include "adapt/adaptation.h"
 
 #include <algorithm>
 #include <cmath>

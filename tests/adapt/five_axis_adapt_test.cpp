@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "adapt/adapt.h"
+#include "adapt/adaptation.h"
 #include "test_paths.h"
 
 namespace camber::adapt {

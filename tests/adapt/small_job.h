@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "adapt/adapt.h"
+#include "adapt/adaptation.h"
 #include "machine/job_file.h"
 #include "tests/support/temp_folder.h"
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "adapt/adapt.h"
+#include "adapt/adaptation.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::adapt {

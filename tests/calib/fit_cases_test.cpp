@@ -11,7 +11,7 @@
 #include "calib/fit_feed_model.h"
 #include "kinematics/control_options.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
 

@@ -6,7 +6,7 @@
 
 #include "feedmodel/timed_path.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "test_paths.h"
 #include "tests/support/feed_runs.h"
 #include "tests/support/test_data.h"

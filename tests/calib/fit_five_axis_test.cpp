@@ -13,7 +13,7 @@
 #include "kinematics/control_options.h"
 #include "kinematics/program_joints.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "test_paths.h"
 
 namespace camber::calib {

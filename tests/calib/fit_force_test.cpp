@@ -1,5 +1,5 @@
 // fit-force against published means, closed forms and an independent simulator.
-#include "calib/fit_force.h"
+#include "calib/force_fit.h"
 
 #include <cmath>
 

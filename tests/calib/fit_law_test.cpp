@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "calib/fit_force.h"
+#include "calib/force_fit.h"
 #include "tests/support/law_material.h"
 #include "tests/support/temp_folder.h"
 

@@ -12,7 +12,7 @@
 #include "kinematics/joint_map.h"
 #include "kinematics/machine_moves.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
 

@@ -1,4 +1,4 @@
-#include "calib/fit_parts.h"
+#include "calib/parts_fit.h"
 
 #include <gtest/gtest.h>
 

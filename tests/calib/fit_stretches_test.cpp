@@ -6,7 +6,7 @@
 
 #include "feedmodel/motion_plan.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "tests/support/test_data.h"
 #include "tests/support/test_program.h"
 

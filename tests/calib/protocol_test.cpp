@@ -1,4 +1,4 @@
-#include "calib/protocol.h"
+#include "calib/protocol_programs.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "base/units.h"
 #include "kinematics/control_options.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "test_paths.h"
 
 namespace camber::calib {

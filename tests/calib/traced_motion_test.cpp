@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::calib {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "api/section_run.h"
+#include "api/merged_sections.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {

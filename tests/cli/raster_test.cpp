@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nc/interpreter.h"
-#include "repath/drop_cutter.h"
+#include "repath/raster/drop_cutter.h"
 #include "test_paths.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/read_text.h"

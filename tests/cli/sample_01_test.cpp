@@ -9,7 +9,7 @@
 
 #include "machine/job_file.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "test_paths.h"
 #include "tests/support/binary_stl.h"
 #include "tests/support/run_camber.h"

@@ -1,5 +1,5 @@
 // The whole loop on a small inclined plane: the error falls, the emitted program is the user's own but for coordinates.
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 
 #include <cmath>
 
@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compensate/verify.h"
+#include "compensate/verify_program.h"
 #include "nc/emit.h"
 #include "nc/interpreter.h"
 #include "test_paths.h"

@@ -13,7 +13,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "test_paths.h"
 #include "tests/support/drawn_job.h"
 

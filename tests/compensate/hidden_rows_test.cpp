@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "nc/interpreter.h"
 #include "tests/support/temp_folder.h"
 

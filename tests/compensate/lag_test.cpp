@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::compensate {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compensate/compensate.h"
+#include "compensate/compensate_path.h"
 #include "test_paths.h"
 #include "tests/support/static_wall.h"
 

@@ -1,8 +1,8 @@
 // A wall that bends under the tool: what shifts and second cuts leave of it, as the sample is shipped.
 #include <gtest/gtest.h>
 
-#include "compensate/compensate.h"
-#include "compensate/verify.h"
+#include "compensate/compensate_path.h"
+#include "compensate/verify_program.h"
 #include "machine/job_file.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"

@@ -7,10 +7,10 @@
 
 #include "kinematics/control_options.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "removal/engagement.h"
 #include "simulate/job_stock.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "tests/copymill/small_copy.h"
 
 namespace camber::copymill {

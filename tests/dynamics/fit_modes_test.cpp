@@ -1,5 +1,5 @@
 // Modes of tap tests whose modes are known (tests/data/README.md).
-#include "dynamics/fit_modes.h"
+#include "dynamics/modal_fit.h"
 
 #include <algorithm>
 #include <fstream>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "feedmodel/lookahead.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 namespace camber::feedmodel {
 namespace {

@@ -10,7 +10,7 @@
 #include "feedmodel/timed_path.h"
 #include "kinematics/control_options.h"
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 #include "test_paths.h"
 #include "tests/support/test_data.h"
 

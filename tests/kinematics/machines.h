@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "test_paths.h"
 
 namespace camber::kinematics::tests {

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::machine {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "machine/set_number.h"
 #include "tests/support/temp_folder.h"
 

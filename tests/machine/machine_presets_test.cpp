@@ -7,7 +7,7 @@
 
 #include "base/numbers.h"
 #include "machine/assumptions.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::machine {

@@ -1,4 +1,4 @@
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 
 #include <gtest/gtest.h>
 

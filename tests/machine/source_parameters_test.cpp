@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "tests/support/temp_folder.h"
 
 namespace camber::machine {

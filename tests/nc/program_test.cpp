@@ -1,4 +1,4 @@
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 #include <fmt/format.h>
 

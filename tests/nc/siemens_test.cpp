@@ -10,7 +10,7 @@
 #include "nc/emit.h"
 #include "nc/language.h"
 #include "nc/mode_words.h"
-#include "nc/siemens/words.h"
+#include "nc/siemens/siemens_words.h"
 #include "test_paths.h"
 #include "tests/nc/siemens_text.h"
 

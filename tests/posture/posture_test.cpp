@@ -1,4 +1,4 @@
-#include "posture/posture.h"
+#include "posture/posture_program.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@
 #include "kinematics/program_joints.h"
 #include "nc/interpreter.h"
 #include "removal/cutter.h"
-#include "repath/drop_cutter.h"
+#include "repath/raster/drop_cutter.h"
 #include "test_paths.h"
 #include "tests/support/temp_folder.h"
 

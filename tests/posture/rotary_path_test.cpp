@@ -7,7 +7,7 @@
 
 #include "base/diagnostics.h"
 #include "base/units.h"
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "posture/choose.h"
 #include "test_paths.h"
 

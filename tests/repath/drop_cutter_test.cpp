@@ -1,5 +1,5 @@
 // The drop cutter against closed forms, against dense sampling, and the tree against every triangle.
-#include "repath/drop_cutter.h"
+#include "repath/raster/drop_cutter.h"
 
 #include <cmath>
 #include <random>

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "repath/fit.h"
-#include "repath/tangent.h"
+#include "repath/compress/fit.h"
+#include "repath/compress/tangent.h"
 
 namespace camber::repath {
 namespace {

@@ -1,4 +1,4 @@
-#include "repath/tip_motion.h"
+#include "repath/post/tip_motion.h"
 
 #include <algorithm>
 #include <random>

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "repath/compress.h"
+#include "repath/compress/compression.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/path_distance.h"
 #include "tests/support/path_kinks.h"

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "repath/compress.h"
-#include "repath/resegment.h"
+#include "repath/compress/compression.h"
+#include "repath/resegment/resegmentation.h"
 #include "tests/nc/nc_text.h"
 #include "tests/support/path_distance.h"
 #include "tests/support/temp_folder.h"

@@ -1,5 +1,5 @@
 // camber post in the words of Klartext and Sinumerik controls, against ISO and against the machine.
-#include "repath/post.h"
+#include "repath/post/post_processing.h"
 
 #include <algorithm>
 #include <cmath>

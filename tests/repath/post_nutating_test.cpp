@@ -8,8 +8,8 @@
 #include "base/units.h"
 #include "kinematics/travel_check.h"
 #include "repath/path_deviation.h"
-#include "repath/post.h"
-#include "repath/post_plan.h"
+#include "repath/post/post_plan.h"
+#include "repath/post/post_processing.h"
 #include "tests/kinematics/machines.h"
 #include "tests/repath/five_axis_program.h"
 

@@ -1,4 +1,4 @@
-#include "repath/post.h"
+#include "repath/post/post_processing.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Rows on the offset surface: no gouge, scallops as asked for, by carving a height field that knows nothing of repath/.
-#include "repath/raster.h"
+#include "repath/raster/raster.h"
 
 #include <cmath>
 #include <functional>

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "kinematics/control_options.h"
-#include "nc/program.h"
-#include "repath/fastest.h"
+#include "nc/program_text.h"
+#include "repath/resegment/fastest.h"
 #include "test_paths.h"
 #include "tests/support/test_data.h"
 

@@ -1,4 +1,4 @@
-#include "repath/resegment.h"
+#include "repath/resegment/resegmentation.h"
 
 #include <cmath>
 #include <random>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "repath/fastest.h"
+#include "repath/resegment/fastest.h"
 #include "tests/support/path_distance.h"
 #include "tests/support/read_text.h"
 

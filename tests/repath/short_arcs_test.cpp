@@ -1,5 +1,5 @@
 // Arcs in what is laid out again: short ones are taken in, good blocks stay.
-#include "repath/resegment.h"
+#include "repath/resegment/resegmentation.h"
 
 #include <cmath>
 #include <random>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "repath/fastest.h"
+#include "repath/resegment/fastest.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/path_distance.h"
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "repath/compress.h"
-#include "repath/tangent.h"
+#include "repath/compress/compression.h"
+#include "repath/compress/tangent.h"
 #include "tests/nc/rs274_oracle.h"
 #include "tests/support/path_distance.h"
 

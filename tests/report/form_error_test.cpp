@@ -1,4 +1,4 @@
-#include "report/form_error.h"
+#include "report/form_error_files.h"
 
 #include <vector>
 

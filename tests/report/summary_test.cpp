@@ -1,4 +1,4 @@
-#include "report/summary.h"
+#include "report/figures_json.h"
 #include "report/verdict_text.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "report/summary.h"
+#include "report/figures_json.h"
 
 namespace camber::report {
 namespace {

@@ -58,7 +58,7 @@ class Reference(unittest.TestCase):
         self.assert_stale("materials.md")
 
     def test_a_word_of_sinumerik_that_is_refused(self):
-        self.edit("nc/siemens/words.cpp", '"CHF CHR", kAddress, Does::extra, ', '"CHF CHR", kAddress, Does::refused, ')
+        self.edit("nc/siemens/siemens_words.cpp", '"CHF CHR", kAddress, Does::extra, ', '"CHF CHR", kAddress, Does::refused, ')
         self.assert_stale("siemens-words.md")
 
     def test_a_code_without_words(self):
@@ -76,8 +76,8 @@ class Reference(unittest.TestCase):
         self.assertIn("turn_s (kSpindleKeys): neither Spindle::turn_s has a comment", out)
 
     def test_a_new_json_key(self):
-        self.edit("report/summary.cpp", 'j["stamps"]', 'j["new_figure"]')
-        self.assert_missing("new_figure", "report/summary.cpp")
+        self.edit("report/figures_json.cpp", 'j["stamps"]', 'j["new_figure"]')
+        self.assert_missing("new_figure", "report/figures_json.cpp")
 
     def test_a_new_column(self):
         self.edit("feedmodel/feed_csv.cpp", "t_s,block,", "t_s,new_column,")

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "removal/tool_path.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 
 namespace camber::simulate {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "tests/support/cutting.h"
 #include "tests/support/plate_job.h"
 

@@ -15,7 +15,7 @@
 #include "removal/form_error.h"
 #include "simulate/cut.h"
 #include "simulate/part_survey.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "tests/support/accuracy_figure.h"
 #include "tests/support/cantilever_plate.h"
 #include "tests/support/cutting.h"

@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "base/units.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "tests/support/plate_job.h"
 
 namespace camber::simulate {

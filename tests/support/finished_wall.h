@@ -6,7 +6,7 @@
 #include "base/units.h"
 #include "removal/form_error.h"
 #include "simulate/cut.h"
-#include "simulate/predict.h"
+#include "simulate/predict_path.h"
 #include "tests/support/cutting.h"
 #include "tests/support/displaced_envelope.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "nc/interpreter.h"
-#include "nc/program.h"
+#include "nc/program_text.h"
 
 namespace camber::tests {
 

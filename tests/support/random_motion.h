@@ -2,7 +2,7 @@
 // Random programs and random machines: what must be the same, or kept, whatever they hold.
 #include <random>
 
-#include "machine/machine.h"
+#include "machine/machine_model.h"
 #include "tests/support/test_program.h"
 
 namespace camber::tests {
