@@ -33,6 +33,19 @@ void look_at_roughed_top(const Evidence& e, Diagnostics& diagnostics) {
       "stock-top"));
 }
 
+/// Returns how far the stock would have to lie elsewhere, mm, where the path stands out of it on one side by more than
+/// runs in and out do and leaves some of it on the other.
+Vec3 lies_aside_mm(const Evidence& e, const nc::Extents& tips) {
+  double clear_mm = 0;
+  for (const ToolWork& work : e.tools) clear_mm = std::max(clear_mm, work.tool->diameter_mm);
+  Vec3 out = Vec3::Zero();
+  for (const Eigen::Index a : {0, 1}) {
+    const double below = e.stock->min_mm[a] - tips.min_mm[a], above = tips.max_mm[a] - e.stock->max_mm[a];
+    if (std::max(below, above) > clear_mm && std::min(below, above) < 0) out[a] = (above - below) / 2;
+  }
+  return out;
+}
+
 }  // namespace
 
 void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
@@ -60,23 +73,26 @@ void look_at_stock_top(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
-  constexpr double kOdd = 0.5, kMeaningless = 0.75;  // runs in and out are long beside small cuts
+  // Runs in and out are long beside small cuts.
+  constexpr double kOddAside = 0.2, kOdd = 0.5, kMeaningless = 0.75;
   if (!e.survey || e.elsewhere) return;
   double beside = 0, all = 0;
   for (const ToolWork& work : e.tools) beside += work.cut.beside_mm, all += work.cut.length_mm;
-  if (all <= 0 || beside <= kOdd * all) return;
+  if (all <= 0 || beside <= kOddAside * all) return;
   const auto longest = std::ranges::max_element(e.survey->moves, {}, [](const auto& m) { return m.beside_mm; });
   const nc::Extents tips = checks::tip_extents(e.program.moves_in_part(), e.program.selected, e.program.holes);
-  const Vec3 &lo = e.stock->min_mm, &hi = e.stock->max_mm;
+  const Vec3 &lo = e.stock->min_mm, &hi = e.stock->max_mm, aside = lies_aside_mm(e, tips);
+  if (beside <= kOdd * all && aside.isZero()) return;
   diagnostics.add(e.at_move(
       beside > kMeaningless * all ? e.error_of(0, {}, true) : Severity::warning,
       static_cast<std::uint32_t>(longest - e.survey->moves.begin()),
       fmt::format(
           "{:.0f} % of the cutting path runs beside or above the stock: the tip cuts from X{:.2f} Y{:.2f} Z{:.2f} "
           "to X{:.2f} Y{:.2f} Z{:.2f}, the stock lies from X{:.2f} Y{:.2f} Z{:.2f} to X{:.2f} Y{:.2f} Z{:.2f}; a "
-          "stock around the path was expected",
+          "stock around the path{} was expected",
           100 * beside / all, tips.min_mm.x(), tips.min_mm.y(), tips.min_mm.z(), tips.max_mm.x(), tips.max_mm.y(),
-          tips.max_mm.z(), lo.x(), lo.y(), lo.z(), hi.x(), hi.y(), hi.z()),
+          tips.max_mm.z(), lo.x(), lo.y(), lo.z(), hi.x(), hi.y(), hi.z(),
+          aside.isZero() ? "" : fmt::format(", elsewhere by X{:.2f} Y{:.2f},", aside.x(), aside.y())),
       "stock-place"));
 }
 
