@@ -73,6 +73,16 @@ bool is_to_cut(const nc::Interpretation& moves) {
   });
 }
 
+/// Returns the job with voxels that show where a tool meets a box or cylinder, in a few seconds.
+machine::Job coarsened(machine::Job job) {
+  constexpr double kOfSide = 1.0 / 300, kMost = 4;
+  if (!job.stock.box && !job.stock.cylinder) return job;
+  const machine::Box box = *checks::stock_box(job);
+  double& voxel_mm = job.simulation.voxel_mm;
+  voxel_mm = std::clamp(kOfSide * (box.max_mm - box.min_mm).maxCoeff(), voxel_mm, kMost * voxel_mm);
+  return job;
+}
+
 /// Prepares the job as predict does up to its sweeps: a height map tells of clearance in seconds. Where none describes
 /// the job, all of it.
 double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
@@ -80,11 +90,12 @@ double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
     plausibility::check_program(job, program, diagnostics);
   };
   const std::optional<machine::Box> stock = checks::stock_box(job);
+  std::optional<double> bytes;
   if (stock) {
     Diagnostics of_original;
     const simulate::Programs programs = simulate::read_programs(
         job, {.check = check}, {.program = diagnostics, .original = of_original, .target = diagnostics});
-    const double bytes = simulate::check_memory_of(job, programs.of_target(), *stock, diagnostics).total();
+    bytes = simulate::check_memory_of(job, programs.of_target(), *stock, diagnostics).total();
     diagnostics.throw_if_errors();
     const simulate::SimulatedProgram& program = programs.program;
     if (simulate::check_heights(job, program, programs.original ? &*programs.original : nullptr, diagnostics,
@@ -93,13 +104,13 @@ double memory_where_ready(const machine::Job& job, Diagnostics& diagnostics) {
                                 })) {
       feedmodel::check_range(program.moves_in_program(), job.program, job.machine, diagnostics);
       checks::check_machine_collisions(job, program.text(), program.moves_in_program(), diagnostics);
-      return bytes;
+      return *bytes;
     }
   }
   Diagnostics of_rest;
-  const double bytes = api::prepare(job, {}, {}, of_rest).setup.target.memory.total();
+  const double of_check = api::prepare(coarsened(job), {}, {}, of_rest).setup.target.memory.total();
   diagnostics = of_rest;
-  return bytes;
+  return bytes.value_or(of_check);
 }
 
 /// Reports what predict would say of the job before its cut, as far as it is not said yet. Returns the memory that it

@@ -83,8 +83,7 @@ CLI::Validator material_name() {
       "");
 }
 
-/// Machines of which a program that turns rotary axes takes the first that has them; those behind the first only where
-/// the program cannot be read with the tool upright.
+/// Machines of which a program that turns rotary axes takes the first that has them.
 constexpr std::array kFiveAxisPresets{"preset:five-axis-trunnion", "preset:five-axis-trunnion-bc"};
 
 /// Returns `options` as the named machine reads programs: with words of rotary axes where it has some.
@@ -171,7 +170,6 @@ ReadForJob read_moves(const InitArguments& arguments, const nc::Program& text, D
   const bool turns = std::ranges::any_of(upright.all(), wants_axes);
   if (turns && arguments.machine.empty())
     for (const char* preset : kFiveAxisPresets) {
-      if (preset != kFiveAxisPresets.front() && !upright.has_errors()) break;
       Diagnostics tilted = diagnostics;
       nc::Interpretation with_axes =
           moves_of(text, arguments, interpreter_of(preset, arguments.interpreter), cutters, tilted);

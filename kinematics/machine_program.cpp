@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -73,6 +74,12 @@ void place_lines(nc::Interpretation& program, const machine::Machine& machine) {
       placed.push_back({joints.index(), start, end});
   }
   for (const Placed& p : placed) program.moves[p.move].start_mm = p.start_mm, program.moves[p.move].end_mm = p.end_mm;
+}
+
+/// reading_of() has placed the part: where G53, SUPA and M91 lead is not known.
+bool zero_is_guessed(const machine::Machine& machine, const nc::InterpreterOptions& given) {
+  const auto offset = given.work_offsets_mm.find(kG54);
+  return machine::is_preset(machine.path) && offset != given.work_offsets_mm.end() && offset->second == Vec3::Zero();
 }
 
 void say_at(const MachineProgram& program, const nc::Move& move, const char* check, std::string message,
@@ -172,6 +179,9 @@ nc::Interpretation read_moves(const nc::Program& text, const machine::Machine& m
     for (const auto& [number, offset] : options.tool_offsets) given.tool_offsets[number] = offset;
   }
   nc::Interpretation moves = nc::interpret(text, given, diagnostics);
+  if (zero_is_guessed(machine, given))
+    for (nc::MachineTarget& target : moves.machine_targets)
+      target.end_mm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   if (where_named && never_turns(machine, moves)) moves.rotary.clear();
   return moves;
 }

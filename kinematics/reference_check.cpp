@@ -31,7 +31,7 @@ void check_reference_points(const machine::Machine& machine, const nc::Program& 
     const nc::Move& move = moves.moves[target.move];
     bool unknown = false;
     for (int axis = 0; axis < 3; ++axis) {
-      const bool goes = (target.given & (1U << static_cast<unsigned>(axis))) != 0;
+      const bool goes = (move.reference_axes & target.given & (1U << static_cast<unsigned>(axis))) != 0;
       if (!goes || !std::isnan(target.end_mm[axis]) ||
           std::isfinite(reference_point_mm(machine, move.reference_point, axis)))
         continue;

@@ -10,6 +10,7 @@
 
 #include "base/units.h"
 #include "deflection/beam.h"
+#include "machine/machine_presets.h"
 #include "motion/machine_checks.h"
 
 namespace camber::motion {
@@ -79,17 +80,30 @@ double usual_rpm(const machine::Tool& tool, double feed_mm_per_min) {
 
 void assume_spindle(const machine::Job& job, const nc::Program& program, nc::Interpretation& moves,
                     Diagnostics& diagnostics) {
-  if (starts_spindle(moves)) return;
+  const bool starts = starts_spindle(moves);
+  if (starts && !machine::is_preset(job.machine.path)) return;
   const auto cuts = [](const nc::Move& m) { return m.kind == nc::MoveKind::linear || m.kind == nc::MoveKind::arc; };
   if (std::ranges::any_of(moves.states, [](const nc::ModalState& s) { return s.spindle_speed_rpm > 0; })) {
-    if (!machine_may_start_spindle(moves)) return;
-    const auto first = std::ranges::find_if(
-        moves.moves, [&](const nc::Move& m) { return cuts(m) && moves.state_of(m).spindle_speed_rpm > 0; });
-    for (nc::ModalState& s : moves.states)
-      if (s.spindle_speed_rpm > 0) s.spindle = nc::SpindleDirection::clockwise;
-    if (first != moves.moves.end())
-      diagnostics.add(program.source.diagnostic(Severity::warning, program.blocks[first->block].offset, kSpindleAssumed,
-                                                "spindle-assumed"));
+    if (!starts && !machine_may_start_spindle(moves)) return;
+    // On a machine of a class also a tool behind M5 that never gets M3.
+    std::set<int> running;
+    for (const nc::Move& m : moves.moves)
+      if (const auto& state = moves.state_of(m); cuts(m) && state.spindle != nc::SpindleDirection::stopped)
+        running.insert(state.tool);
+    const auto to_start = [&](const nc::ModalState& state) {
+      return state.spindle_speed_rpm > 0 && !running.contains(state.tool);
+    };
+    const auto first =
+        std::ranges::find_if(moves.moves, [&](const nc::Move& m) { return cuts(m) && to_start(moves.state_of(m)); });
+    if (first == moves.moves.end()) return;
+    diagnostics.add(program.source.diagnostic(
+        Severity::warning, program.blocks[first->block].offset,
+        starts ? fmt::format("no M3 starts the spindle for T{}; it is assumed to turn clockwise at the S before",
+                             moves.state_of(*first).tool)
+               : kSpindleAssumed,
+        "spindle-assumed"));
+    for (nc::ModalState& state : moves.states)
+      if (to_start(state)) state.spindle = nc::SpindleDirection::clockwise;
     return;
   }
   std::map<int, double> feeds_mm_per_min;

@@ -48,6 +48,11 @@ ForeignWord explain_letters(std::string_view name) {
 }
 
 ForeignWord explain_assignment(std::string_view address) {
+  if (address.size() > 1 && address.front() == 'Q')
+    return {fmt::format("{}= is of a cycle in a DIN/ISO program of a Heidenhain control, which is not supported; the "
+                        "program in Klartext was expected",
+                        address),
+            "not-supported", true};
   return of_language(fmt::format("{}=", address), LanguageId::siemens);
 }
 

@@ -264,11 +264,13 @@ std::string usual_machine(const JobProposal& proposal) {
     if (!use.feed_mm_per_min.empty()) feed_mm_per_min = std::max(feed_mm_per_min, use.feed_mm_per_min.max);
   }
   constexpr double kRouter_rpm = 30000, kRouter_mm_per_min = 5000, kVmc_rpm = 12000, kVmc_mm_per_min = 18000,
-                   kLinear_rpm = 20000;
+                   kLinear_rpm = 20000, kOfControl_rpm = 18000;
   const auto comments = machine::commented_lines(proposal.text.source);
   const bool router =
       std::ranges::any_of(comments, [&](const auto& c) { return std::regex_search(c.comment, kRouter); });
   if (router && rpm <= kRouter_rpm && feed_mm_per_min <= kRouter_mm_per_min) return "router";
+  if (rpm <= kOfControl_rpm && proposal.text.language != nc::LanguageId::iso)
+    return proposal.text.language == nc::LanguageId::heidenhain ? "tnc-640" : "sinumerik-840d";
   if (rpm <= kVmc_rpm && feed_mm_per_min <= kVmc_mm_per_min) return "vmc-40";
   return rpm <= kLinear_rpm ? "vmc-linear" : "hsc-die-mould";
 }

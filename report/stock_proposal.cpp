@@ -19,6 +19,7 @@ constexpr double kMaxCells = 240;  // along the longer side
 constexpr double kMinCell_mm = 0.25;
 constexpr double kTouch_mm = 0.02;        // rapids may lie on a surface
 constexpr double kUseful = 0.5;           // of what the program could remove: a box with less is no blank
+constexpr double kOftenBeside = 0.6;      // of the path: a blank that the program gives for its graphics alone
 constexpr double kHalfDiagonal = 0.7072;  // of a cell: the one that a line goes through is always met
 constexpr int kTops = 12;                 // heights between the highest pass and the wanted top that are tried
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -243,8 +244,29 @@ class Proposer {
     run_through(map, top);
     const auto sums = map.removed_sums(top);
     out.in_the_way = map.best(top, sums) != map.all();
+    const double beside = share_beside(out.box);
+    if (beside > kOftenBeside && out.placed.empty())
+      out.placed = fmt::format("CHECK: {:.0f} % of the cutting path runs beside or above it", 100 * beside);
     look_at_depths(out);
     return out;
+  }
+
+  /// Returns the share of the cutting path on which the cutter is beside or above the box.
+  double share_beside(const machine::Box& box) {
+    double beside_mm = 0, all_mm = 0;
+    for (const nc::Move& m : moves_.moves) {
+      if (!is_cut(m)) continue;
+      const double r = profile_of_move(m).radius_mm - kTouch_mm, length_mm = nc::length_mm(moves_, m);
+      const int steps = std::clamp(static_cast<int>(std::ceil(length_mm / std::max(r, 1.0))), 1, 1000);
+      all_mm += length_mm;
+      for (int i = 0; i < steps; ++i) {
+        const Vec3 tip = nc::point_at(moves_, m, (i + 0.5) / steps);
+        const Vec3 out = (box.min_mm - tip).cwiseMax(tip - box.max_mm).cwiseMax(0.0);
+        if (tip.z() >= box.max_mm.z() || std::hypot(out.x(), out.y()) >= std::max(r, kTouch_mm))
+          beside_mm += length_mm / steps;
+      }
+    }
+    return all_mm > 0 ? beside_mm / all_mm : 0;
   }
 
   /// Places a blank of known size: Z0 on top, or below where cuts lie above it; X0 Y0 in the middle or in the corner,

@@ -235,10 +235,12 @@ class Klartext {
   double old_value(int part) const;
   void drill_old();
   void mill_bore();
+  void mill_thread();
   void mill_old_pocket();
   void mill_pocket_cycle();
   PocketMoves pocket_moves();
   double pocket_cutter_mm() const;
+  [[noreturn]] void refuse(const char* check, const std::string& message) const;
   [[noreturn]] void too_many_cuts() const;
   void run_pattern(int number);
   void define_pattern(const Statement& s);

@@ -16,7 +16,7 @@ constexpr double kFastFeed = 99999;        ///< FMAX in a parameter of a cycle
 
 /// Machining cycles that are made.
 constexpr std::array kMade{1,   2,   4,   5,   12,  17,  200, 201, 202, 203, 204,
-                           205, 206, 207, 208, 209, 240, 241, 251, 252, 253};
+                           205, 206, 207, 208, 209, 240, 241, 251, 252, 253, 262};
 
 struct Named {
   int first, last;
@@ -34,7 +34,7 @@ constexpr std::array kRefused{
     Named{210, 219, "a slot, pocket or stud", "the finished path was expected"},
     Named{222, 233, "a milling cycle", "the finished path was expected"},
     Named{254, 258, "a slot or stud", "the finished path was expected"},
-    Named{262, 267, "thread milling", "CP blocks of the helix were expected"},
+    Named{263, 267, "thread milling", "CP blocks of the helix were expected"},
     Named{268, 277, "an SL or OCM cycle", "the finished path was expected"},
     Named{278, 299, "a milling or turning cycle", "the finished path was expected"},
     Named{400, 499, "a probing cycle", "leave out probing, or set the datum that it would set (CYCL DEF 247)"},
@@ -369,6 +369,8 @@ void Klartext::call_cycle(std::size_t offset) {
     open_program(selected_program_, offset);
   else if (cycle_.number == 208)
     mill_bore();
+  else if (cycle_.number == 262)
+    mill_thread();
   else if (cycle_.number == 4 || cycle_.number == 5)
     mill_old_pocket();
   else if (cycle_.number >= 251 && cycle_.number <= 253)
@@ -385,8 +387,7 @@ void Klartext::cycle_move(MoveKind kind, const Vec3& programmed_end, double feed
   const Vec3 end = end_in_moves(programmed_end, 7);
   if (kind != MoveKind::dwell && end == position_mm_) return;
   if (++cycle_moves_ > kMaxCycleMoves)
-    throw FormulaError(cycle_.offset, "cycle",
-                       fmt::format("the cycles make more than {} moves; fewer pecks were expected", kMaxCycleMoves));
+    refuse("cycle", fmt::format("the cycles make more than {} moves; fewer pecks were expected", kMaxCycleMoves));
   const bool rapid = kind == MoveKind::linear && std::isinf(feed_mm_per_s);
   Move& move = add_move(rapid ? MoveKind::rapid : kind, end);
   move.canned = true;
@@ -414,12 +415,10 @@ void Klartext::drill_hole(const Hole& h) {
   prepare_cutting("a cycle", 0);
   if (h.depth_mm == 0) return;
   if (h.depth_mm > 0)
-    throw FormulaError(cycle_.offset, "cycle",
-                       fmt::format("the depth of cycle {} is positive ({}); a negative one was expected", cycle_.number,
-                                   h.depth_mm / unit_mm()));
+    refuse("cycle", fmt::format("the depth of cycle {} is positive ({}); a negative one was expected", cycle_.number,
+                                h.depth_mm / unit_mm()));
   if (h.feed_mm_per_s <= 0)
-    throw FormulaError(cycle_.offset, "feed-missing",
-                       fmt::format("cycle {} has no feed; a feed greater than zero was expected", cycle_.number));
+    refuse("feed-missing", fmt::format("cycle {} has no feed; a feed greater than zero was expected", cycle_.number));
   go(MoveKind::rapid, top, 0);
   const double begin = h.start_mm < 0 ? h.surface_mm + h.start_mm : top;
   if (h.start_mm < 0) go(MoveKind::linear, begin + std::min(h.clearance_mm, top - begin), h.pre_feed_mm_per_s);
@@ -427,8 +426,7 @@ void Klartext::drill_hole(const Hole& h) {
   double peck = h.peck_mm > 0 ? h.peck_mm : depth - bottom;
   if ((depth - bottom) / std::max(1e-12, h.less_mm > 0 ? std::min(peck, std::max(h.least_mm, 1e-12)) : peck) >
       kMaxPecks)
-    throw FormulaError(cycle_.offset, "cycle",
-                       "the cycle would peck more than 100000 times; a larger Q202 was expected");
+    refuse("cycle", "the cycle would peck more than 100000 times; a larger Q202 was expected");
   int breaks = h.breaks;
   while (depth > bottom) {
     const double next = std::max(depth - peck, bottom);
@@ -471,7 +469,7 @@ void Klartext::drill(int number) {
   if (number != 240) h.depth_mm = number == 204 ? 0 : q(201) * unit;
   const auto tap = [&](double pitch) {
     const double rpm = state_.spindle_speed_rpm;
-    if (rpm <= 0) throw FormulaError(cycle_.offset, "spindle-speed", "tapping without a spindle speed; S was expected");
+    if (rpm <= 0) refuse("spindle-speed", "tapping without a spindle speed; S was expected");
     cycle_g_ = pitch < 0 ? 74 : 84;
     h.feed_mm_per_s = std::abs(pitch) * unit * rpm / 60;
     h.feed_out_mm_per_s = h.feed_mm_per_s;
@@ -577,8 +575,7 @@ void Klartext::bore_back() {
   Vec3 shift = Vec3::Zero();
   if (direction >= 1 && direction <= 4)
     shift[direction % 2 == 1 ? axes.first : axes.second] = direction <= 2 ? -off : off;
-  if (feed <= 0)
-    throw FormulaError(cycle_.offset, "feed-missing", "cycle 204 has no feed; Q254 greater than zero was expected");
+  if (feed <= 0) refuse("feed-missing", "cycle 204 has no feed; Q254 greater than zero was expected");
   cycle_g_ = 87;
   prepare_cutting("a cycle", 0);
   const auto go = [&](double height, double at_feed) {
@@ -605,7 +602,7 @@ void Klartext::bore_back() {
 /// The value of CYCL DEF 1.2 and the like.
 double Klartext::old_value(int part) const {
   if (const auto found = cycle_.values.find(part); found != cycle_.values.end()) return found->second;
-  throw FormulaError(cycle_.offset, "cycle", fmt::format("cycle {0} without its part {0}.{1}", cycle_.number, part));
+  refuse("cycle", fmt::format("cycle {0} without its part {0}.{1}", cycle_.number, part));
 }
 
 /// Cycles 1, 2 and 17: the tool stands at the clearance above the surface.
@@ -633,7 +630,7 @@ void Klartext::drill_old() {
     cycle_g_ = 84;
   } else {
     const double pitch = value(3) * unit, rpm = state_.spindle_speed_rpm;
-    if (rpm <= 0) throw FormulaError(cycle_.offset, "spindle-speed", "tapping without a spindle speed; S was expected");
+    if (rpm <= 0) refuse("spindle-speed", "tapping without a spindle speed; S was expected");
     h.feed_mm_per_s = std::abs(pitch) * rpm / 60;
     h.feed_out_mm_per_s = h.feed_mm_per_s;
     cycle_g_ = pitch < 0 ? 74 : 84;
@@ -659,8 +656,7 @@ void Klartext::cycle_circle(const Vec3& centre, double sweep_rad, double end_hei
   }
   end[axes.normal] = end_height_mm;
   const auto in_moves = frame_.plain ? std::optional(arc) : from_program(frame_, arc);
-  if (!in_moves)
-    throw FormulaError(cycle_.offset, "scaling", "a circle of a cycle under a scale of single axes is an ellipse");
+  if (!in_moves) refuse("scaling", "a circle of a cycle under a scale of single axes is an ellipse");
   out_.arcs.push_back(*in_moves);
   Move& move = add_move(MoveKind::arc, end_in_moves(end, 7));
   move.arc = static_cast<std::uint32_t>(out_.arcs.size() - 1);
@@ -680,9 +676,8 @@ void Klartext::mill_bore() {
   const double high = std::max(top, surface + q_if_set(204).value_or(0) * unit);
   const auto tool = cutter_radius_mm();
   if (feed <= 0 || std::isinf(feed))
-    throw FormulaError(cycle_.offset, "feed-missing", "cycle 208 has no feed; Q206 greater than zero was expected");
-  if (bottom >= top)
-    throw FormulaError(cycle_.offset, "cycle", "the depth of cycle 208 is positive; a negative one was expected");
+    refuse("feed-missing", "cycle 208 has no feed; Q206 greater than zero was expected");
+  if (bottom >= top) refuse("cycle", "the depth of cycle 208 is positive; a negative one was expected");
   prepare_cutting("a cycle", 0);
   if (!tool)
     warn(cycle_.offset, "radius-unknown",
@@ -693,9 +688,8 @@ void Klartext::mill_bore() {
          "cycle 208");
   const double radius = tool ? 0.5 * diameter - *tool : 0;
   if (tool && radius < 0)
-    throw FormulaError(
-        cycle_.offset, "cutter-too-large",
-        fmt::format("the hole of cycle 208 ({:.4f} mm) is smaller than the tool ({:.4f} mm)", diameter, 2 * *tool));
+    refuse("cutter-too-large",
+           fmt::format("the hole of cycle 208 ({:.4f} mm) is smaller than the tool ({:.4f} mm)", diameter, 2 * *tool));
   const Vec3 middle = programmed();
   const auto go = [&](MoveKind kind, double height) {
     Vec3 end = programmed();
@@ -708,9 +702,7 @@ void Klartext::mill_bore() {
     beside[axes_of(plane_of_axis(tool_axis_)).first] += radius;
     cycle_move(MoveKind::linear, beside, feed);
     const double turns = pitch > 0 ? (top - bottom) / pitch : 1;
-    if (turns > kMaxPecks)
-      throw FormulaError(cycle_.offset, "cycle",
-                         "cycle 208 would make more than 100000 turns; a larger Q334 was expected");
+    if (turns > kMaxPecks) refuse("cycle", "cycle 208 would make more than 100000 turns; a larger Q334 was expected");
     const double sense = climb ? 1 : -1;
     cycle_circle(middle, sense * 2 * kPi * turns, bottom, feed);
     cycle_circle(middle, sense * 2 * kPi, bottom, feed);
@@ -721,6 +713,51 @@ void Klartext::mill_bore() {
     go(MoveKind::linear, bottom);
   }
   go(MoveKind::rapid, high);
+}
+
+/// Cycle 262: an inside thread by helices, with semicircles in and out. Q355: 0 one turn at the depth, 1 the whole
+/// length at once, else single turns so many pitches apart.
+void Klartext::mill_thread() {
+  const double unit = unit_mm(), surface = q_if_set(203).value_or(0) * unit, top = surface + std::abs(q(200)) * unit;
+  const double depth = -q(201) * unit, pitch = std::abs(q(239)) * unit,
+               apart = std::max(0.0, q_if_set(355).value_or(0));
+  const double feed = feed_q(207), down = q_if_set(253) ? feed_q(253) : feed;
+  if (!(feed > 0) || std::isinf(feed) || !(down > 0))
+    refuse("feed-missing", "cycle 262 has no feed; Q207 greater than zero was expected");
+  if (!(depth > 0) || !(pitch > 0) || depth / pitch > kMaxPecks)
+    refuse("cycle", "cycle 262 needs a negative depth Q201 and a pitch Q239");
+  prepare_cutting("a cycle", 0);
+  const double tool = cutter_radius_mm().value_or(0), radius = 0.5 * q(335) * unit - tool;
+  if (tool == 0)
+    warn(cycle_.offset, "radius-unknown", fmt::format("no radius is given for tool {}; cycle 262 takes 0", state_.tool),
+         "cycle 262");
+  if (!(radius > 0))
+    refuse("cutter-too-large", fmt::format("the thread of cycle 262 ({:.4f} mm) is smaller than the tool ({:.4f} mm)",
+                                           q(335) * unit, 2 * tool));
+  warn(cycle_.offset, "cycle", "the ways in and out of cycle 262 are taken as semicircles; the control's are helices",
+       "cycle 262 ways");
+  const bool clockwise_spindle = state_.spindle != SpindleDirection::counter_clockwise;
+  const double sense = (q_if_set(351).value_or(1) >= 0) == clockwise_spindle ? 1 : -1;
+  const bool up = (q(239) > 0) == (sense > 0);
+  const double length = apart == 1 ? depth : pitch, count = apart > 1 ? std::ceil(depth / (apart * pitch) - 1e-9) : 1;
+  const Vec3 middle = programmed();
+  const int first = axes_of(plane_of_axis(tool_axis_)).first;
+  const auto at = [&](double beside, double height) {
+    Vec3 p = middle;
+    p[first] += beside;
+    p[tool_axis_] = height;
+    return p;
+  };
+  cycle_move(MoveKind::rapid, at(0, top), 0);
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    const double low = surface - depth + (up ? i : count - 1 - i) * apart * pitch;
+    const double from = up ? low : low + length, to = up ? low + length : low;
+    cycle_move(MoveKind::linear, at(0, from), down);
+    cycle_circle(at(radius / 2, from), sense * kPi, from, feed);
+    cycle_circle(middle, sense * 2 * kPi * length / pitch, to, feed);
+    cycle_circle(0.5 * (at(0, to) + programmed()), sense * kPi, to, feed);
+  }
+  cycle_move(MoveKind::rapid, at(0, std::max(top, surface + q_if_set(204).value_or(0) * unit)), 0);
 }
 
 // --- pockets: cycles 4, 5 and 251 to 253
@@ -735,11 +772,10 @@ PocketMoves Klartext::pocket_moves() {
 /// Radius of the cutter; without it there is no pocket.
 double Klartext::pocket_cutter_mm() const {
   if (const auto tool = cutter_radius_mm(); tool && *tool > 0) return *tool;
-  throw FormulaError(
-      cycle_.offset, "radius-unknown",
-      fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
-                  "with R, or the finished path, was expected",
-                  cycle_.number, state_.tool, state_.tool));
+  refuse("radius-unknown",
+         fmt::format("cycle {} (pocket milling) needs the radius of tool {}, which nothing gives; TOOL DEF {} "
+                     "with R, or the finished path, was expected",
+                     cycle_.number, state_.tool, state_.tool));
 }
 
 /// Cycles 4 and 5: a pocket from its middle outwards, in depths. The tool stands at the clearance above the middle.
@@ -753,16 +789,14 @@ void Klartext::mill_old_pocket() {
   const double plunge = cycle_.feeds.contains(3) ? cycle_.feeds[3] : feed_.value_or(0);
   const int feed_part = round ? 5 : 6;
   const double feed = cycle_.feeds.contains(feed_part) ? cycle_.feeds[feed_part] : feed_.value_or(0);
-  if (plunge <= 0 || feed <= 0)
-    throw FormulaError(cycle_.offset, "feed-missing", "the pocket has no feed; F was expected in its parts");
-  if (step <= 0)
-    throw FormulaError(cycle_.offset, "cycle", "the pocket has no depth of each cut; its part 3 was expected");
+  if (plunge <= 0 || feed <= 0) refuse("feed-missing", "the pocket has no feed; F was expected in its parts");
+  if (step <= 0) refuse("cycle", "the pocket has no depth of each cut; its part 3 was expected");
   PocketCycle pocket;
   pocket.round = round;
   pocket.half_mm[0] = round ? value(4) - tool : 0.5 * std::abs(value(4)) - tool;
   pocket.half_mm[1] = round ? pocket.half_mm[0] : 0.5 * std::abs(value(5)) - tool;
   if (pocket.least_mm() < -1e-9 || pocket.half_mm[1] < -1e-9)
-    throw FormulaError(cycle_.offset, "cutter-too-large", "the pocket is smaller than the tool");
+    refuse("cutter-too-large", "the pocket is smaller than the tool");
   constexpr double kOverlap = 1.4;  // of the radius: MP7430
   pocket.sideways_mm = kOverlap * tool;
   pocket.sense = cycle_.sense;
@@ -782,10 +816,13 @@ void Klartext::mill_old_pocket() {
   cycle_move(MoveKind::rapid, middle, 0);
 }
 
+void Klartext::refuse(const char* check, const std::string& message) const {
+  throw FormulaError(cycle_.offset, check, message);
+}
+
 void Klartext::too_many_cuts() const {
-  throw FormulaError(
-      cycle_.offset, "cycle",
-      fmt::format("cycle {} would take more than 100000 rings or depths; larger ones were expected", cycle_.number));
+  refuse("cycle",
+         fmt::format("cycle {} would take more than 100000 rings or depths; larger ones were expected", cycle_.number));
 }
 
 /// Cycles 251 to 253.
@@ -812,21 +849,18 @@ void Klartext::mill_pocket_cycle() {
   pocket.finishing_mm_per_s = q_if_set(385) ? feed_q(385) : pocket.feed_mm_per_s;
   if (pocket.feed_mm_per_s <= 0 || pocket.plunge_mm_per_s <= 0 || pocket.finishing_mm_per_s <= 0 ||
       std::isinf(pocket.feed_mm_per_s))
-    throw FormulaError(cycle_.offset, "feed-missing",
-                       fmt::format("cycle {} has no feed; Q206 and Q207 greater than zero were expected", number));
+    refuse("feed-missing", fmt::format("cycle {} has no feed; Q206 and Q207 greater than zero were expected", number));
   if (pocket.bottom_mm >= pocket.surface_mm || pocket.step_mm <= 0)
-    throw FormulaError(cycle_.offset, "cycle",
-                       fmt::format("cycle {} needs a negative depth Q201 and a depth of each cut Q202", number));
+    refuse("cycle", fmt::format("cycle {} needs a negative depth Q201 and a depth of each cut Q202", number));
   if (!(overlap > 0 && overlap < 2))
-    throw FormulaError(cycle_.offset, "cycle",
-                       fmt::format("an overlap Q370 of {:g}; greater than 0 and less than 2 was expected", overlap));
+    refuse("cycle", fmt::format("an overlap Q370 of {:g}; greater than 0 and less than 2 was expected", overlap));
   const double whole_x = (pocket.round ? q(223) : q(218)) * unit, whole_y = (pocket.round ? q(223) : q(219)) * unit;
   pocket.half_mm[0] = 0.5 * std::abs(whole_x) - tool;
   pocket.half_mm[1] = 0.5 * std::abs(whole_y) - tool;
   if (pocket.least_mm() - pocket.side_mm < -1e-9)
-    throw FormulaError(cycle_.offset, "cutter-too-large",
-                       fmt::format("the pocket of cycle {} is smaller than the tool of {:.4f} mm and its allowance",
-                                   number, 2 * tool));
+    refuse("cutter-too-large",
+           fmt::format("the pocket of cycle {} is smaller than the tool of {:.4f} mm and its allowance", number,
+                       2 * tool));
   if (!pocket.round) {
     pocket.corner_mm = slot ? pocket.half_mm[1] : std::max(0.0, std::abs(q_if_set(220).value_or(0)) * unit - tool);
     pocket.angle_rad = rad_from_deg(q_if_set(slot ? 374 : 224).value_or(0));

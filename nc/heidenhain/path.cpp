@@ -316,8 +316,9 @@ void Klartext::go_in_machine_frame(const BlockValues& b) {
     if (!value) continue;
     machine_mm[axis] = *value * unit_mm();
     given = static_cast<std::uint8_t>(given | 1U << axis);
-    place_[static_cast<std::size_t>(axis)] = known ? Place::known : Place::machine;
-    end[axis] = known ? (*origin)[axis] + machine_mm[axis] : 0;
+    const bool here = known && axis != tool_axis_;  // the height needs the tool's length
+    place_[static_cast<std::size_t>(axis)] = here ? Place::known : Place::machine;
+    end[axis] = here ? (*origin)[axis] + machine_mm[axis] : 0;
   }
   if (!options_.rotary_axes.empty()) {
     if (b.has(92)) machine_mm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -145,6 +145,7 @@ class BlockRunner : public SystemValues {
   void set_feed_mode(FeedMode mode);
   void read_feed();
   double internal_feed(double value) const;
+  void begin_cutting_speed(const CodeWord& code);
   void read_spindle_speed();
   void read_tool();
   void change_tool(std::uint32_t offset);
@@ -221,6 +222,10 @@ class BlockRunner : public SystemValues {
   void drill(const CycleCall& call);
   void mill_thread(const CycleCall& call);
   void mill_pocket_cycle(const CycleCall& call);
+  void run_pocket(const PocketCycle& pocket, const CycleCall& call);
+  void mill_slots(const CycleCall& call);
+  double sense_of(int cdir) const;
+  double bottom_mm(const CycleCall& call) const;
   void mill_face(const CycleCall& call);
   bool begin_milling(const CycleCall& call);
   double cutter_radius_mm(const CycleCall& call, bool needed);
@@ -265,6 +270,7 @@ class BlockRunner : public SystemValues {
   int first_cut_offset_ = 0;
 
   bool cycle832_ = false, compressor_ = false;
+  bool cutting_speed_ = false;                                     ///< G96: S is no spindle speed
   double cycle832_tolerance_mm_ = -1, contour_tolerance_mm_ = -1;  ///< negative: not given
   int blending_ = 60;                                              ///< 60, 64, 641 ...
   /// Path control before CYCLE832, which rounds corners (G645); none where a word of its own has followed.

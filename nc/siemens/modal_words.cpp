@@ -261,19 +261,20 @@ void BlockRunner::read_g_code(const CodeWord& code) {
   // Units, planes and dimensions were read before; the others change no move. DISC: corners are arcs.
   constexpr std::array kPassed{17,  18,  19,  20,  21,  62,  70,  71,  90,  91,  97,  140, 141, 142, 143,
                                290, 340, 341, 450, 451, 460, 461, 462, 621, 700, 710, 971, 972, 973};
+  const auto is = [g](std::initializer_list<int> codes) { return std::ranges::find(codes, g) != codes.end(); };
+  if (is({96, 961, 962})) return begin_cutting_speed(code);
+  if (is({97, 971, 972, 973})) cutting_speed_ = false;
   if (std::ranges::find(kPassed, g) != kPassed.end()) return;
   struct Refused {
     int first, last;
     std::string_view what, instead;
   };
   constexpr std::array kRefused{Refused{33, 35, "thread cutting", "a tapping cycle"},
-                                Refused{96, 96, "constant cutting speed", "G97 with S"},
                                 Refused{147, 148, "smooth approach and retraction", "G1 to G3"},
                                 Refused{247, 248, "smooth approach and retraction", "G1 to G3"},
                                 Refused{291, 291, "ISO mode", "a program in ISO G code"},
                                 Refused{347, 348, "smooth approach and retraction", "G1 to G3"},
-                                Refused{931, 931, "feed by duration", "G94"},
-                                Refused{961, 962, "constant cutting speed", "G97 with S"}};
+                                Refused{931, 931, "feed by duration", "G94"}};
   for (const Refused& r : kRefused)
     if (g >= r.first && g <= r.last)
       return error(code.offset, "not-supported",
@@ -282,7 +283,6 @@ void BlockRunner::read_g_code(const CodeWord& code) {
   if (g >= 810 && g <= 829)
     return report_.warning(code.offset, "no-effect",
                            fmt::format("G{} of the machine's maker is read without effect", g), fmt::format("G{}", g));
-  const auto is = [g](std::initializer_list<int> codes) { return std::ranges::find(codes, g) != codes.end(); };
   if (g >= 0 && g <= 3) return set_motion(static_cast<Motion>(g));
   if (is({60, 64, 641, 642, 643, 644, 645, 646})) return set_blending(g);
   if (is({601, 602, 603})) return set_mode_word(fmt::format("G{}", g));
@@ -363,7 +363,19 @@ double BlockRunner::internal_feed(double value) const {
                                                         : mm_per_s_from_mm_per_min(value * unit_mm());
 }
 
+/// G96 (F per revolution), G961, G962: S is a cutting speed until G97.
+void BlockRunner::begin_cutting_speed(const CodeWord& code) {
+  cutting_speed_ = true;
+  if (code.number != 962) set_feed_mode(code.number == 96 ? FeedMode::per_revolution : FeedMode::per_minute);
+  report_.warning(code.offset, "spindle-speed",
+                  fmt::format("under G{} S is a cutting speed, and the spindle speed follows the diameter turned; S is "
+                              "read without effect until G97",
+                              code.number),
+                  "G96");
+}
+
 void BlockRunner::read_spindle_speed() {
+  if (cutting_speed_) return;
   const Slot& s = words_.of('S');
   if (!s.given) return;
   if (s.value < 0) {

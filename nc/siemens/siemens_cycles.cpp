@@ -85,6 +85,9 @@ void BlockRunner::run_cycle(const CycleCall& call, const BlockPlace& place) {
     case Does::pocket:
       mill_pocket_cycle(call);
       break;
+    case Does::slots:
+      mill_slots(call);
+      break;
     case Does::face:
       mill_face(call);
       break;
@@ -158,12 +161,11 @@ void BlockRunner::drill(const CycleCall& call) {
   const double unit = unit_mm();
   const double reference = call.number(1) * unit, level = reference + std::abs(call.number(2)) * unit;
   const double rtp = call.number(0) * unit;
-  const bool by_dpr = call.has(4) && (call.number(4) != 0 || !call.has(3));
-  if (!by_dpr && !call.has(3))
+  if (!call.has(3) && !call.has(4))
     return error(call.offset, "cycle",
                  fmt::format("{} has no depth; DP or DPR, its fourth or fifth value, was expected", name),
                  name + " DP");
-  const double bottom = by_dpr ? reference - std::abs(call.number(4)) * unit : call.number(3) * unit;
+  const double bottom = bottom_mm(call);
   if (bottom > level)
     return error(
         call.offset, "cycle",
@@ -319,6 +321,12 @@ void BlockRunner::drill(const CycleCall& call) {
   }
 }
 
+/// DP, or DPR below the reference plane where it is given.
+double BlockRunner::bottom_mm(const CycleCall& call) const {
+  const bool by_dpr = call.has(4) && (call.number(4) != 0 || !call.has(3));
+  return (by_dpr ? call.number(1) - std::abs(call.number(4)) : call.number(3)) * unit_mm();
+}
+
 bool BlockRunner::begin_milling(const CycleCall& call) {
   const std::string name = name_of(call);
   check_unit();
@@ -348,8 +356,7 @@ void BlockRunner::mill_thread(const CycleCall& call) {
   const double unit = unit_mm();
   const double rtp = call.number(0) * unit, reference = call.number(1) * unit,
                level = reference + std::abs(call.number(2)) * unit;
-  const bool by_dpr = call.has(4) && (call.number(4) != 0 || !call.has(3));
-  const double bottom = by_dpr ? reference - std::abs(call.number(4)) * unit : call.number(3) * unit;
+  const double bottom = bottom_mm(call);
   const double pitch = std::abs(call.number(7)) * unit, nominal = call.number(5) * unit, core = call.number(6) * unit;
   const bool outside = call.number(10) == 1, clockwise = call.number(9) == 2;
   if (!(pitch > 0) || !(nominal > 0) || !(core > 0) || bottom > level || !call.has(0))
@@ -454,7 +461,7 @@ void BlockRunner::mill_pocket_cycle(const CycleCall& call) {
   pocket.finishes = vari != 1;
   if (!(whole_depth > 0) || pocket.least_mm() - pocket.side_mm < -1e-9)
     return error(
-        call.offset, "cycle",
+        call.offset, whole_depth > 0 ? "cutter-too-large" : "cycle",
         fmt::format("{} needs a depth below its reference plane, and sides in which the tool of {:.3f} mm and the "
                     "allowance have room",
                     name, 2 * cutter));
@@ -463,16 +470,26 @@ void BlockRunner::mill_pocket_cycle(const CycleCall& call) {
   pocket.feed_mm_per_s = pocket.finishing_mm_per_s = *feed;
   pocket.plunge_mm_per_s =
       call.number(mid + 4) > 0 ? cycle_feed(call.number(mid + 4), call, "FFD").value_or(*feed) : *feed;
-  // 0: climb cutting, 1: conventional, by the sense of the spindle; 2: G2, 3: G3.
-  const int cdir = call.digit(mid + 5, 1);
+  pocket.sense = sense_of(call.digit(mid + 5, 1));
+  run_pocket(pocket, call);
+}
+
+/// CDIR: 0 climb cutting, 1 conventional, by the sense of the spindle; 2 G2, 3 G3.
+double BlockRunner::sense_of(int cdir) const {
   const bool turns_back = state_.spindle == SpindleDirection::counter_clockwise;
-  pocket.sense = cdir == 3 || (cdir < 2 && (cdir == 0) != turns_back) ? 1 : -1;
-  report_.warning(
-      call.offset, "cycle",
-      fmt::format("the plunge of {} and its ways from ring to ring are taken as straight lines; the control's "
-                  "differ",
-                  name),
-      name + " ways");
+  return cdir == 3 || (cdir < 2 && (cdir == 0) != turns_back) ? 1 : -1;
+}
+
+/// Mills it from RTP, with rapids over its middle, and back to RTP.
+void BlockRunner::run_pocket(const PocketCycle& pocket, const CycleCall& call) {
+  const std::string name = name_of(call);
+  report_.warning(call.offset, "cycle",
+                  fmt::format("the plunge of {} and its ways from ring to ring are taken as straight lines; the "
+                              "control's differ",
+                              name),
+                  name + " ways");
+  const PlaneAxes axes = axes_of(plane_);
+  const double rtp = call.number(0) * unit_mm();
   const PocketMoves moves{[this](const Vec3& end, double speed) {
                             go(std::isinf(speed) ? CycleStep::Kind::rapid : CycleStep::Kind::feed, end, speed, 0);
                           },
@@ -480,7 +497,7 @@ void BlockRunner::mill_pocket_cycle(const CycleCall& call) {
                             const Vec3 from = programmed();
                             go_round(centre + rotation_in(plane_, sweep) * (from - centre), centre, sweep, speed);
                           }};
-  rapid_to_height(std::max(programmed()[axes.normal], call.number(0) * unit));
+  rapid_to_height(std::max(programmed()[axes.normal], rtp));
   Vec3 over = pocket.middle_mm;
   over[axes.normal] = programmed()[axes.normal];
   go(CycleStep::Kind::rapid, over, 0, 0);
@@ -488,7 +505,56 @@ void BlockRunner::mill_pocket_cycle(const CycleCall& call) {
   if (!mill_pocket(pocket, axes, programmed(), moves))
     return error(call.offset, "cycle",
                  fmt::format("{} would take more than 100000 rings or depths; larger ones were expected", name));
-  rapid_to_height(call.number(0) * unit);
+  rapid_to_height(rtp);
+}
+
+/// LONGHOLE(RTP, RFP, SDIS, DP, DPR, NUM, LENG, CPA, CPO, RAD, STA1, INDA, FFD, FFP1, MID) and SLOT1 with WID behind
+/// LENG and then CDIR, FAL, VARI, MIDF, FFP2: slots that begin on a circle and lead outwards.
+void BlockRunner::mill_slots(const CycleCall& call) {
+  const std::string name = name_of(call);
+  const bool wide = name == "SLOT1";
+  const std::size_t behind = wide ? 8 : 7;  // CPA
+  const double unit = unit_mm(), cutter = cutter_radius_mm(call, true);
+  if (!begin_milling(call) || cutter <= 0) return;
+  PocketCycle slot;
+  slot.surface_mm = call.number(1) * unit;
+  slot.clearance_mm = slot.surface_mm + std::abs(call.number(2)) * unit;
+  slot.bottom_mm = bottom_mm(call);
+  const double depth = slot.surface_mm - slot.bottom_mm, length = std::abs(call.number(6)) * unit,
+               count = call.number(5);
+  slot.half_mm[0] = 0.5 * length - cutter;
+  slot.half_mm[1] = wide ? 0.5 * std::abs(call.number(7)) * unit - cutter : 0;
+  slot.corner_mm = slot.half_mm[1];
+  slot.side_mm = wide ? std::abs(call.number(17)) * unit : 0;
+  const int vari = wide ? call.digit(18, 1) : 1;
+  const bool possible = depth > 0 && count >= 1 && count <= 1000 && vari <= 2;
+  if (!possible || slot.least_mm() - slot.side_mm < -1e-9)
+    return error(call.offset, possible ? "cutter-too-large" : "cycle",
+                 fmt::format("{} needs NUM of 1 to 1000, VARI of 0 to 2, a depth below its reference plane, and sides "
+                             "in which the tool of {:.3f} mm and the allowance have room",
+                             name, 2 * cutter));
+  const auto feed = cycle_feed(call.number(behind + 6), call, "FFP1");
+  if (!feed) return;
+  slot.feed_mm_per_s = *feed;
+  slot.plunge_mm_per_s = cycle_feed(call.number(behind + 5), call, "FFD").value_or(*feed);
+  slot.finishing_mm_per_s =
+      wide && call.number(20) > 0 ? cycle_feed(call.number(20), call, "FFP2").value_or(*feed) : *feed;
+  slot.step_mm = call.number(behind + 7) > 0 ? call.number(behind + 7) * unit : depth;
+  slot.finishing_step_mm = wide ? std::abs(call.number(19)) * unit : 0;
+  slot.sideways_mm = cutter;
+  slot.roughs = vari != 2;
+  slot.finishes = vari != 1;
+  slot.sense = sense_of(wide ? call.digit(16, 1) : 0);
+  const PlaneAxes axes = axes_of(plane_);
+  const double step = call.number(behind + 4) != 0 ? call.number(behind + 4) : 360 / count;
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    slot.angle_rad = rad_from_deg(call.number(behind + 3) + i * step);
+    const double along = call.number(behind + 2) * unit + 0.5 * length;
+    slot.middle_mm = programmed();
+    slot.middle_mm[axes.first] = call.number(behind) * unit + along * std::cos(slot.angle_rad);
+    slot.middle_mm[axes.second] = call.number(behind + 1) * unit + along * std::sin(slot.angle_rad);
+    run_pocket(slot, call);
+  }
 }
 
 /// CYCLE61(RTP, Z0, SDIS, Z1, X0, Y0, X1, Y1, infeed, sideways, allowance, F, VARI, LIM, DMODE, AMODE) and CYCLE71(RTP,

@@ -428,9 +428,7 @@ void Sequencer::run_items(const Statement& s) {
                                 call->row->name));
     } else {
       if (!files_.find(*frame().file, tree().names[call->name])) {
-        report_.error(call->offset, "subprogram",
-                      fmt::format("no subprogram {0}: neither %_N_{0}_SPF in this file nor {0}.SPF beside it",
-                                  tree().names[call->name]));
+        report_missing(tree().names[call->name], call->offset);
         return;
       }
       modal_ = ModalCall{&tree(), frame().file, call, std::nullopt};
@@ -632,14 +630,23 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
   runner_.set_command(*item.row, item.offset);
 }
 
+void Sequencer::report_missing(const std::string& name, std::size_t offset) {
+  if (name.starts_with("E_") || name.starts_with("F_"))
+    return report_.error(offset, "not-supported",
+                         fmt::format("{} is a step of a ShopMill work plan, which is not supported; the program in G "
+                                     "code was expected",
+                                     name),
+                         "ShopMill");
+  report_.error(offset, "subprogram",
+                fmt::format("no subprogram {0}: neither %_N_{0}_SPF in this file nor {0}.SPF beside it", name), name);
+}
+
 void Sequencer::start_subprogram(const std::string& name, const Item& item, std::size_t times, bool of_mcall) {
   if (times == 0) return;
   const Tree& own = of_mcall && modal_ ? *modal_->tree : tree();
   const auto found = files_.find(*frame().file, name);
   if (!found) {
-    report_.error(item.offset, "subprogram",
-                  fmt::format("no subprogram {0}: neither %_N_{0}_SPF in this file nor {0}.SPF beside it", name), name);
-    return;
+    return report_missing(name, item.offset);
   }
   if (frames_.size() >= kMaxLevels) {
     report_.error(item.offset, "subprogram",

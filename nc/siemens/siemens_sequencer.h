@@ -58,6 +58,7 @@ class Sequencer {
   void after_block();
   void finish_block();
   void run_call(const Item& item, std::size_t times, const Statement& s);
+  void report_missing(const std::string& name, std::size_t offset);
   void start_subprogram(const std::string& name, const Item& item, std::size_t times, bool of_mcall);
   CycleCall cycle_call(const Item& item);
   void bind_parameters(Frame& frame, const Statement* procedure, const Item& item);

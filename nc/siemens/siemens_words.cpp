@@ -208,7 +208,8 @@ constexpr auto kRows = std::to_array<WordRow>({
     WordRow{"CYCLE76 CYCLE77 CYCLE79", kCycle, Does::refused, "spigots, polygon", kByMoves},
     WordRow{"CYCLE92 CYCLE93 CYCLE94 CYCLE95 CYCLE96 CYCLE97 CYCLE98 CYCLE99", kCycle, Does::refused, "turning",
             kByMoves},
-    WordRow{"CYCLE899 LONGHOLE SLOT1 SLOT2", kCycle, Does::refused, "slots and long holes", kByMoves},
+    WordRow{"LONGHOLE SLOT1", kCycle, Does::slots, "long holes and slots on a circle"},
+    WordRow{"CYCLE899 SLOT2", kCycle, Does::refused, "open and circular slots", kByMoves},
     WordRow{"CYCLE930 CYCLE940 CYCLE951 CYCLE952", kCycle, Does::refused, "turning", kByMoves},
     WordRow{"CYCLE973 CYCLE974 CYCLE976 CYCLE977 CYCLE978 CYCLE979 CYCLE994 CYCLE995 CYCLE997 CYCLE998 CYCLE971 "
             "CYCLE982 CYCLE996",

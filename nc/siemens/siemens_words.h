@@ -45,6 +45,7 @@ enum class Does : std::uint8_t {
   pattern,         // HOLES1 ...
   thread_milling,  // CYCLE90
   pocket,          // POCKET3, POCKET4
+  slots,           // LONGHOLE, SLOT1
   face,            // CYCLE61, CYCLE71
   modal_call,      // MCALL
   alarm,           // SETAL

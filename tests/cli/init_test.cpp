@@ -292,6 +292,37 @@ TEST(Init, ProposesCuttersThatFitThePocketsOfCycles) {
     EXPECT_EQ(run_camber(folder, fmt::format("check --job {}", job)).status, 0) << job;
 }
 
+/// A contour round a blank that is as large as the part, as posts write it for the graphics: a guess, no error.
+TEST(Init, TakesABlankBesideThePathForAGuess) {
+  const TempFolder folder;
+  folder.write("p.h",
+               "BEGIN PGM P MM\nBLK FORM 0.1 Z X+0 Y+0 Z-10\nBLK FORM 0.2 X+40 Y+30 Z+0\n; T3 D=10 - FLAT END MILL\n"
+               "TOOL CALL 3 Z S6000\nL X-20 Y-20 R0 FMAX M3\nL Z-9 FMAX\nL X-5 Y-5 F900\nL Y+35\nL X+45\nL Y-5\nL "
+               "X-5\nL Z+50 FMAX M30\nEND PGM P MM\n");
+  ASSERT_EQ(run_camber(folder, "-q init p.h -o p.toml").status, 0);
+  const std::string job = tests::file_text(folder / "p.toml");
+  EXPECT_NE(job.find("\nmachine = \"preset:tnc-640\" "), std::string::npos) << job;
+  EXPECT_NE(job.find("# Its place: CHECK: 100 % of the cutting path runs beside or above it.\nbox_mm = [[0.0, 0.0, "
+                     "-10.0], [40.0, 30.0, 0.0]]\n"),
+            std::string::npos)
+      << job;
+}
+
+/// M91 on a machine of a class leads to no known place, least of all into the part.
+TEST(Init, JobsOfFiveAxesRetractInMachineCoordinates) {
+  const TempFolder folder;
+  folder.write(
+      "p.h",
+      "BEGIN PGM P MM\nBLK FORM 0.1 Z X-20 Y-20 Z-20\nBLK FORM 0.2 X+20 Y+20 Z+0\n; T3 D=10 R=5 - BALL END "
+      "MILL\nTOOL CALL 3 Z S6000\nL Z-1 FMAX M91\nL X-30 Y+0 R0 FMAX M3\nFUNCTION TCPM F TCP AXIS POS PATHCTRL "
+      "AXIS\nL X-30 Y+0 Z+20 A-10 C+0 FMAX\nL Z-1 F900\nL X+30 A-12\nL Z+40 FMAX\nFUNCTION RESET TCPM\nL Z-1 "
+      "FMAX M91\nL X-300 Y-1 FMAX M91\nM30\nEND PGM P MM\n");
+  ASSERT_EQ(run_camber(folder, "-q init p.h -o p.toml").status, 0);
+  const auto check = run_camber(folder, "check --job p.toml");
+  EXPECT_EQ(check.status, 0) << check.err;
+  EXPECT_EQ((check.err + check.out).find("collision"), std::string::npos) << check.err;
+}
+
 TEST(Init, SaysWhichUnitTheProgramWasReadIn) {
   const TempFolder folder;
   folder.write("p.nc", "T1 M6 (D=0.25 - FLAT END MILL)\nS3000 M3\nG0 X0 Y0 Z1\nG1 Z-0.1 F10\nX1.\nM30\n");
@@ -342,7 +373,7 @@ TEST(Init, TakesAFiveAxisMachineForAProgramThatTurnsItsAxes) {
   EXPECT_EQ(machine_of("bc"), "preset:five-axis-trunnion-bc");
   const auto check_bc = run_camber(folder, "check --job bc.toml");
   EXPECT_EQ(check_bc.status, 0) << check_bc.err;
-  EXPECT_EQ(machine_of("upright"), "preset:vmc-40");
+  EXPECT_EQ(machine_of("upright"), "preset:sinumerik-840d");
   const auto check = run_camber(folder, "check --job tip.toml");
   EXPECT_EQ(check.status, 0) << check.err;
 }

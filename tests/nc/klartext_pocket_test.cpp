@@ -166,6 +166,58 @@ TEST(KlartextPocket, SinumerikPocketsCutTheSame) {
   EXPECT_EQ(done.messages.size(), 1u);
 }
 
+TEST(KlartextPocket, SinumerikSlotsCutTheSame) {
+  InterpreterOptions options = units();
+  set_cutter_radius(options.tool_offsets, 1, kRadius_mm);
+  const auto feeds = [&](const std::string& cycle) {
+    const Read r = read_text("G710 G17 G90\nT1 M6\nS3000 M3\nG0 X20 Y30 Z50\n" + cycle + "\nM30\n", options, "p.mpf");
+    EXPECT_FALSE(r.diagnostics.has_errors()) << r.messages.front();
+    return feeds_of(r);
+  };
+  const auto of_253 = [](double width, double side, double angle_deg) {
+    return feeds_of(read_clean(text_of({.slot = true,
+                                        .length = 62,
+                                        .width = width,
+                                        .corner = width / 2,
+                                        .angle_deg = angle_deg,
+                                        .side = side,
+                                        .operation = 1})));
+  };
+  EXPECT_EQ(feeds("SLOT1(20,0,2,-10,,1,62,20,-16,30,5,0,0,150,500,4,0,0.5,1)"), of_253(20, 0.5, 0));
+  EXPECT_EQ(feeds("SLOT1(20,0,2,,10,1,62,20,20,-6,5,90,0,150,500,4,3,0,1)"), of_253(20, 0, 90));
+  EXPECT_EQ(feeds("LONGHOLE(20,0,2,-10,,1,62,-16,30,5,0,0,150,500,4)"), of_253(2 * kRadius_mm, 0, 0));
+  // Three on a circle: a third of a turn apart.
+  const std::string three = feeds("LONGHOLE(20,0,2,-10,,3,62,-16,30,5,0,0,150,500,4)");
+  EXPECT_EQ(std::ranges::count(three, '\n'), 3 * std::ranges::count(of_253(2 * kRadius_mm, 0, 0), '\n'));
+}
+
+/// Turns of the helices of cycle 262 and the heights from which and to which they go, as text.
+std::string helices_of(const std::string& values) {
+  const Read r = read_text(
+      "BEGIN PGM A MM\nTOOL DEF 1 L+0 R+4\nTOOL CALL 1 Z S3000\nL X+20 Y+30 Z+50 R0 FMAX M3\nCYCL DEF 262 Q335=16 "
+      "Q201=-15 Q253=750 Q200=2 Q203=0 Q204=50 Q207=500 " +
+          values + "\nCYCL CALL\nM30\nEND PGM A MM\n",
+      units(), "p.h");
+  EXPECT_EQ(r.messages.size(), 1u);  // the ways in and out
+  std::string out;
+  for (const Move& m : r.moves.moves) {
+    if (m.arc == Move::kNoArc || m.start_mm.z() == m.end_mm.z()) continue;
+    out += fmt::format("{:g}: {:g} to {:g}\n", r.moves.arcs[m.arc].sweep_rad / (2 * kPi), m.start_mm.z(), m.end_mm.z());
+    EXPECT_NEAR((m.start_mm - Vec3(20, 30, m.start_mm.z())).norm(), 16.0 / 2 - 4, 1e-9);
+  }
+  EXPECT_LT((r.moves.moves.back().end_mm - Vec3(20, 30, 50)).norm(), 1e-9);
+  return out;
+}
+
+/// Climb cutting inside goes round counter-clockwise: a right-hand thread upwards, a left-hand one downwards.
+TEST(KlartextPocket, ThreadsRiseByTheirPitchAndHand) {
+  EXPECT_EQ(helices_of("Q239=1.5 Q355=1 Q351=1"), "10: -15 to 0\n");
+  EXPECT_EQ(helices_of("Q239=1.5 Q355=1 Q351=-1"), "-10: 0 to -15\n");
+  EXPECT_EQ(helices_of("Q239=-1.5 Q355=1 Q351=1"), "10: 0 to -15\n");
+  EXPECT_EQ(helices_of("Q239=1.5 Q355=0 Q351=1"), "1: -15 to -13.5\n");
+  EXPECT_EQ(helices_of("Q239=1.5 Q355=4 Q351=1"), "1: -15 to -13.5\n1: -9 to -7.5\n1: -3 to -1.5\n");
+}
+
 TEST(KlartextPocket, CutsNoDeeperThanQ202AtOnce) {
   const PocketCase p;
   const Read r = read_clean(text_of(p));

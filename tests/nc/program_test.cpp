@@ -126,6 +126,10 @@ TEST(NcReader, NamesTheLanguageOfOtherControlsAndStops) {
             std::vector<std::string>{
                 "p.nc:1:1: error: BEGIN belongs to Heidenhain Klartext programs, and this text is read as ISO G code; "
                 "--dialect heidenhain reads it in that language [heidenhain]"});
+  EXPECT_EQ(complaints_as_iso("N10 G200\nQ200=3.\nQ201=-12.5\n"),
+            std::vector<std::string>{
+                "p.nc:2:1: error: Q200= is of a cycle in a DIN/ISO program of a Heidenhain control, which is not "
+                "supported; the program in Klartext was expected [not-supported]"});
 }
 TEST(NcReader, TakesMissingNumbersOfMinorWordsAsZeroAndWarns) {
   const Read r = read_text("G21 G99 G82 X1 Y1 Z-1 R1 P F15.04");

@@ -431,9 +431,12 @@ TEST(Siemens, WrongProgramsGetAMessageAtTheLine) {
             (Messages{"p.mpf:2:1: error: the radius of the arc is 10.0000 mm at its start and 30.0000 mm at its end; a "
                       "difference below 0.05 mm was expected (with the signs of I, J, K turned "
                       "over it would fit: they lead from the start to the centre) [arc-radius]"}));
-  EXPECT_EQ(said("G0 X0 Y0 Z0\nSLOT1(5,0,1)\n"),
-            (Messages{"p.mpf:2:1: error: SLOT1 (slots and long holes) is not supported; what can stand in its place: "
-                      "the moves themselves, G0 to G3, from the CAM system [not-supported]"}));
+  EXPECT_EQ(said("G0 X0 Y0 Z0\nSLOT2(5,0,1)\n"),
+            (Messages{"p.mpf:2:1: error: SLOT2 (open and circular slots) is not supported; what can stand in its "
+                      "place: the moves themselves, G0 to G3, from the CAM system [not-supported]"}));
+  EXPECT_EQ(said("E_HEAD(,,,1)\nF_DRILL(1)\n"),
+            (Messages{"p.mpf:1:1: error: E_HEAD is a step of a ShopMill work plan, which is not supported; the program "
+                      "in G code was expected (and 1 more like it) [not-supported]"}));
   EXPECT_EQ(
       said("G710 T1 D1\nM6\nG0 X0 Y0 Z0\nPOCKET3(5,0,1)\n"),
       (Messages{"p.mpf:4:1: error: POCKET3 needs the radius of tool 1, which nothing gives; the diameter of the cutter "
@@ -483,6 +486,20 @@ TEST(Siemens, WrongBlocksGetOneMessage) {
 }
 
 /// FB holds for its block, FRC for its corner; without FRC the corner has the feed of the block that leads away.
+TEST(Siemens, ACuttingSpeedIsNoSpindleSpeed) {
+  const Read r = read_siemens("G710 T1 D1\nM6\nG0 X0 Y0 Z0 S1200 M3\nG96 S180 LIMS=3000\nG97 S900\nG1 X10 F200 G94\n");
+  EXPECT_EQ(
+      r.messages,
+      (std::vector<std::string>{
+          "p.mpf:4:1: warning: under G96 S is a cutting speed, and the spindle speed follows the diameter turned; "
+          "S is read without effect until G97 [spindle-speed]",
+          "p.mpf:4:10: warning: LIMS (limit of the spindle speed) is read without effect [no-effect]"}));
+  EXPECT_EQ(r.moves.state_of(r.moves.moves.back()).spindle_speed_rpm, 900);
+  std::size_t of_180 = 0;
+  for (const ModalState& s : r.moves.states) of_180 += s.spindle_speed_rpm == 180;
+  EXPECT_EQ(of_180, 0u);
+}
+
 TEST(Siemens, FeedsOfBlocksAndCorners) {
   const Read r = read_siemens("G1 X0 Y0 Z0 F600\nX10 RND=1\nY10 F1200\nX0 FB=300 RND=1 FRC=60\nY0\nX10 RND=20\nY5\n");
   std::vector<double> feeds;
