@@ -212,7 +212,7 @@ std::string features_csv(const std::vector<FeatureResult>& results) {
 namespace {
 
 constexpr double kOtherSource = 0.25, kSmallTool = 1.5, kSmallTool_mm = 4;
-constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kLag = 0.5, kDiameter_mm = 0.015;
+constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kLag = 0.5, kDiameter_mm = 0.028;
 
 }  // namespace
 

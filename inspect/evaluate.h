@@ -64,7 +64,7 @@ std::string features_csv(const std::vector<FeatureResult>& results);
 ///               was fitted on thick chips; stiffness: 40 % where the root or the flutes are typical values, else 15 %
 ///   contour     50 %: gains of position loops, each axis to 15 %. Lag goes with their inverse square (21 %), and where
 ///               the axes differ arcs between lines lose more (46 % for 10 % either way, arcs of 1 mm at 15 mm/s)
-///   size        15 um: a tool's diameter, ground to h10 (48 um from 3 to 6 mm)
+///   size        28 um: a tool's diameter as it is called, ground to h10 (0 to -48 um from 3 to 6 mm; root mean square)
 ///
 /// The distance of two parts of circles has the band of their sizes.
 ///

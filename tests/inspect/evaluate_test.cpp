@@ -148,8 +148,8 @@ TEST(Evaluate, DistanceOfTwoBoresFollowsTheirMiddles) {
   std::vector<SurfacePoint> points;
   add_hole(points, {0, 0, 0}, 2, 3, [](double a, double) { return 0.003 * std::cos(a); });    // 3 um towards -X
   add_hole(points, {25, 0, 0}, 2, 3, [](double a, double) { return -0.004 * std::cos(a); });  // 4 um towards +X
-  const auto r = evaluate({bore("A", {0, 0, 0}, 4, 3), bore("B", {25, 0, 0}, 4, 3), distance_of_a_and_b()}, points,
-                          kVoxel_mm);
+  const auto r =
+      evaluate({bore("A", {0, 0, 0}, 4, 3), bore("B", {25, 0, 0}, 4, 3), distance_of_a_and_b()}, points, kVoxel_mm);
   ASSERT_TRUE(r[2].predicted_mm) << r[2].reason;
   EXPECT_NEAR(1000 * (*r[2].predicted_mm - 25), 7, kRead_um);
 }
