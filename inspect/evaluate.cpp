@@ -129,6 +129,11 @@ void set_positions(std::vector<Evaluation>& all) {
   }
 }
 
+/// Standard error of what bending, lag and corners change.
+double moved_std_mm(const FeatureResult& r, const ModelError& error) {
+  return std::hypot(error.deflection * r.deflection_um, error.contour * r.contour_um) / 1000;
+}
+
 void set_given(FeatureResult& r, const Feature& f, const ModelError& error) {
   r.feature = f.name;
   r.kind = f.kind;
@@ -137,7 +142,17 @@ void set_given(FeatureResult& r, const Feature& f, const ModelError& error) {
   if (f.tol_mm) r.lower_mm = f.nominal_mm + (*f.tol_mm)[0], r.upper_mm = f.nominal_mm + (*f.tol_mm)[1];
   if (!r.predicted_mm) return;
   const double of_size = std::abs(f.size_per_diameter()) * error.size_mm;
-  r.std_mm = std::hypot(error.deflection * r.deflection_um / 1000, error.contour * r.contour_um / 1000, of_size);
+  r.std_mm = std::hypot(moved_std_mm(r, error), of_size);
+}
+
+/// The middle of a part of a circle is as uncertain as its size, however well the errors of two of them cancel in
+/// their distance: where the axes lag by different times, both are off by about a quarter of the way between.
+template <class Named>
+void add_band_of_ends(const Evaluation& distance, const Named& named, const ModelError& error) {
+  if (!distance.out.std_mm) return;
+  for (const std::string& name : distance.feature.of)
+    if (!name.empty() && named(name).feature.arc_rad)
+      distance.out.std_mm = std::hypot(*distance.out.std_mm, moved_std_mm(named(name).out, error));
 }
 
 }  // namespace
@@ -159,6 +174,7 @@ std::vector<FeatureResult> evaluate(const std::vector<Feature>& features,
     if (!e.feature.of[0].empty()) evaluate_distance_of(e, named(e.feature.of[0]), named(e.feature.of[1]));
   set_positions(all);
   for (std::size_t i = 0; i < features.size(); ++i) set_given(out[i], features[i], error);
+  for (const Evaluation& e : all) add_band_of_ends(e, named, error);
   return out;
 }
 
@@ -196,7 +212,7 @@ std::string features_csv(const std::vector<FeatureResult>& results) {
 namespace {
 
 constexpr double kOtherSource = 0.25, kSmallTool = 1.5, kSmallTool_mm = 4;
-constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kGain = 0.15, kDiameter_mm = 0.005;
+constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kLag = 0.5, kDiameter_mm = 0.028;
 
 }  // namespace
 
@@ -207,7 +223,7 @@ machine::ModelError model_error_of(const machine::Job& job) {
   const auto any = [&](auto test) { return std::ranges::any_of(job.tools, test); };
   const double chips = any([](const auto& t) { return t.second.diameter_mm < kSmallTool_mm; }) ? kSmallTool : 0;
   const double stiffness = any([](const auto& t) { return !t.second.typical.empty(); }) ? kTypicalRoot : kGivenRoot;
-  return {.deflection = std::hypot(force, chips, stiffness), .contour = kGain, .size_mm = kDiameter_mm};
+  return {.deflection = std::hypot(force, chips, stiffness), .contour = kLag, .size_mm = kDiameter_mm};
 }
 
 }  // namespace camber::inspect

@@ -123,16 +123,33 @@ TEST(Evaluate, PositionsAreJudgedAfterTheAlignment) {
   EXPECT_NEAR(*r[2].predicted_mm, 4, 1e-4);  // sizes do not depend on it
 }
 
-TEST(Evaluate, DistanceOfTwoBoresFollowsTheirMiddles) {
-  std::vector<SurfacePoint> points;
-  add_hole(points, {0, 0, 0}, 2, 3, [](double a, double) { return 0.003 * std::cos(a); });    // 3 um towards -X
-  add_hole(points, {25, 0, 0}, 2, 3, [](double a, double) { return -0.004 * std::cos(a); });  // 4 um towards +X
+Feature distance_of_a_and_b() {
   Feature d;
   d.name = "D";
   d.kind = FeatureKind::distance;
   d.of = {"A", "B"};
   d.nominal_mm = 25;
-  const auto r = evaluate({bore("A", {0, 0, 0}, 4, 3), bore("B", {25, 0, 0}, 4, 3), d}, points, kVoxel_mm);
+  return d;
+}
+
+TEST(Evaluate, DistanceOfPartsOfCirclesHasTheBandOfTheirSizes) {
+  std::vector<SurfacePoint> points;
+  for (const double x : {0.0, 25.0})
+    add_hole(
+        points, {x, 0, 0}, 2, 3, [](double, double) { return 0.006; }, 0.002);
+  std::vector<Feature> features{bore("A", {0, 0, 0}, 4, 3), bore("B", {25, 0, 0}, 4, 3), distance_of_a_and_b()};
+  const machine::ModelError error{.deflection = 0.5, .contour = 0.1, .size_mm = 0.001};
+  EXPECT_NEAR(*evaluate(features, points, kVoxel_mm, error)[2].std_mm, 0, 1e-6);  // whole circles keep their middles
+  for (Feature* f : {&features[0], &features[1]}) f->arc_rad = {0, kPi};
+  EXPECT_NEAR(*evaluate(features, points, kVoxel_mm, error)[2].std_mm, std::sqrt(2) * std::hypot(0.006, 0.0004), 1e-6);
+}
+
+TEST(Evaluate, DistanceOfTwoBoresFollowsTheirMiddles) {
+  std::vector<SurfacePoint> points;
+  add_hole(points, {0, 0, 0}, 2, 3, [](double a, double) { return 0.003 * std::cos(a); });    // 3 um towards -X
+  add_hole(points, {25, 0, 0}, 2, 3, [](double a, double) { return -0.004 * std::cos(a); });  // 4 um towards +X
+  const auto r =
+      evaluate({bore("A", {0, 0, 0}, 4, 3), bore("B", {25, 0, 0}, 4, 3), distance_of_a_and_b()}, points, kVoxel_mm);
   ASSERT_TRUE(r[2].predicted_mm) << r[2].reason;
   EXPECT_NEAR(1000 * (*r[2].predicted_mm - 25), 7, kRead_um);
 }
