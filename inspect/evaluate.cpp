@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -42,9 +43,7 @@ double spread_of(const std::vector<double>& values) {
 
 double size_by(const std::vector<double>& sizes, FeatureFilter filter) {
   if (filter == FeatureFilter::min_zone) return *std::ranges::min_element(sizes);
-  double sum = 0;
-  for (const double s : sizes) sum += s;
-  return sum / static_cast<double>(sizes.size());
+  return std::accumulate(sizes.begin(), sizes.end(), 0.0) / static_cast<double>(sizes.size());
 }
 
 bool Evaluation::failed(const Probing& probing) {
@@ -141,18 +140,19 @@ void set_given(FeatureResult& r, const Feature& f, const ModelError& error) {
   r.measured_mm = machine::measured_mean_mm(f);
   if (f.tol_mm) r.lower_mm = f.nominal_mm + (*f.tol_mm)[0], r.upper_mm = f.nominal_mm + (*f.tol_mm)[1];
   if (!r.predicted_mm) return;
-  const double of_size = std::abs(f.size_per_diameter()) * error.size_mm;
-  r.std_mm = std::hypot(moved_std_mm(r, error), of_size);
+  r.std_mm = std::hypot(moved_std_mm(r, error), f.size_per_diameter() * error.size_mm);
 }
 
-/// The middle of a part of a circle is as uncertain as its size, however well the errors of two of them cancel in
-/// their distance: where the axes lag by different times, both are off by about a quarter of the way between.
-template <class Named>
-void add_band_of_ends(const Evaluation& distance, const Named& named, const ModelError& error) {
-  if (!distance.out.std_mm) return;
-  for (const std::string& name : distance.feature.of)
-    if (!name.empty() && named(name).feature.arc_rad)
-      distance.out.std_mm = std::hypot(*distance.out.std_mm, moved_std_mm(named(name).out, error));
+std::string cell(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value + 0.0, decimals) : std::string();
+}
+
+/// A name with a comma or a quote stands in quotes.
+std::string quoted(const std::string& name) {
+  if (name.find_first_of(",\"\n") == std::string::npos) return name;
+  std::string out = "\"";
+  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
 }
 
 }  // namespace
@@ -174,25 +174,13 @@ std::vector<FeatureResult> evaluate(const std::vector<Feature>& features,
     if (!e.feature.of[0].empty()) evaluate_distance_of(e, named(e.feature.of[0]), named(e.feature.of[1]));
   set_positions(all);
   for (std::size_t i = 0; i < features.size(); ++i) set_given(out[i], features[i], error);
-  for (const Evaluation& e : all) add_band_of_ends(e, named, error);
+  // The middle of a part of a circle is as uncertain as its size: axes that lag apart change both.
+  for (Evaluation& e : all)
+    for (const std::string& end : e.feature.of)
+      if (e.out.std_mm && !end.empty() && named(end).feature.arc_rad)
+        e.out.std_mm = std::hypot(*e.out.std_mm, moved_std_mm(named(end).out, error));
   return out;
 }
-
-namespace {
-
-std::string cell(const std::optional<double>& value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value + 0.0, decimals) : std::string();
-}
-
-/// A name with a comma or a quote stands in quotes.
-std::string quoted(const std::string& name) {
-  if (name.find_first_of(",\"\n") == std::string::npos) return name;
-  std::string out = "\"";
-  for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-}  // namespace
 
 std::string features_csv(const std::vector<FeatureResult>& results) {
   std::string out =
@@ -209,14 +197,9 @@ std::string features_csv(const std::vector<FeatureResult>& results) {
   return out;
 }
 
-namespace {
-
-constexpr double kOtherSource = 0.25, kSmallTool = 1.5, kSmallTool_mm = 4;
-constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kLag = 0.5, kDiameter_mm = 0.028;
-
-}  // namespace
-
 machine::ModelError model_error_of(const machine::Job& job) {
+  constexpr double kOtherSource = 0.25, kSmallTool = 1.5, kSmallTool_mm = 4;
+  constexpr double kTypicalRoot = 0.4, kGivenRoot = 0.15, kLag = 0.5, kDiameter_mm = 0.028;
   if (job.model_error) return *job.model_error;
   const machine::MaterialPreset* preset = machine::find_preset(job.material.preset);
   const double force = preset ? preset->scatter_percent / 100 : kOtherSource;

@@ -59,15 +59,13 @@ std::string features_csv(const std::vector<FeatureResult>& results);
 
 /// The job's [model_error] where it has one; else relative standard errors by where its numbers come from:
 ///
-///   deflection  forces: the preset's scatter, or 25 % for coefficients from elsewhere, and 150 % for the thin chips of
-///               small tools, where size effect, edge wear and rubbing make up to three times the force of a law that
-///               was fitted on thick chips; stiffness: 40 % where the root or the flutes are typical values, else 15 %
+///   deflection  forces: the preset's scatter, or 25 %, and 150 % for the thin chips of small tools (size effect, edge
+///               wear, rubbing); stiffness: 40 % where root or flutes are typical values, else 15 %
 ///   contour     50 %: gains of position loops, each axis to 15 %. Lag goes with their inverse square (21 %), and where
 ///               the axes differ arcs between lines lose more (46 % for 10 % either way, arcs of 1 mm at 15 mm/s)
 ///   size        28 um: a tool's diameter as it is called, ground to h10 (0 to -48 um from 3 to 6 mm; root mean square)
 ///
 /// The distance of two parts of circles has the band of their sizes.
-///
 /// Source of the size effect: Altintas, Manufacturing Automation, 2nd ed., ch. 2; of the 150 %: docs/measured-parts.md.
 machine::ModelError model_error_of(const machine::Job& job);
 
