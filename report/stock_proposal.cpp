@@ -235,7 +235,9 @@ class Proposer {
     } else {
       return std::nullopt;
     }
-    const Vec3 low = out.box.min_mm.cwiseMax(swept.min_mm), high = out.box.max_mm.cwiseMin(swept.max_mm);
+    const Vec3 low = out.box.min_mm.cwiseMax(swept.min_mm);
+    Vec3 high = out.box.max_mm.cwiseMin(swept.max_mm);
+    high.z() = out.box.max_mm.z();  // cutters reach up from their tips
     if (((high - low).array() <= 0).any()) return std::nullopt;
     low_ = swept.min_mm - Vec3(kSide_mm, kSide_mm, kBelow_mm);
     high_ = swept.max_mm + Vec3(kSide_mm, kSide_mm, 0);
