@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "base/units.h"
 #include "calib/bounded_least_squares.h"
@@ -134,6 +135,12 @@ LimitParameter stop_time_parameter() {
   return a_number(
       "control.corner.stop_time_ms", "ms", [](const Machine& m) { return 1000 * m.control.corner.stop_time_s; },
       [](Machine& m, double v) { m.control.corner.stop_time_s = v / 1000; }, 0.1, 2000, 30);
+}
+
+LimitParameter bell_time_parameter() {
+  return a_number(
+      "cycle.bell_time_ms", "ms", [](const Machine& m) { return 1000 * m.cycle.bell_time_s; },
+      [](Machine& m, double v) { m.cycle.bell_time_s = v / 1000; }, 1, 500, 40);
 }
 
 bool is_acceleration(const LimitParameter& p) { return p.name.find(".acceleration_") != p.name.npos; }
@@ -276,6 +283,19 @@ std::vector<Row> rows_of(const std::vector<TimedLines>& data) {
   return rows;
 }
 
+/// Whether the axis of an acceleration moves in feed moves that a log times.
+bool moves_in_logs(const std::vector<TimedLines>& data, const LimitParameter& p) {
+  const std::size_t axis = std::string_view("xyz").find(p.name[std::string_view("axis.").size()]);
+  if (axis == std::string_view::npos) return false;
+  const auto moves = [&](const nc::Move& move) {
+    const bool feed = move.kind == nc::MoveKind::linear || move.kind == nc::MoveKind::arc;
+    return feed && move.start_mm[static_cast<Eigen::Index>(axis)] != move.end_mm[static_cast<Eigen::Index>(axis)];
+  };
+  return std::ranges::any_of(data, [&](const TimedLines& lines) {
+    return lines.logged() && std::ranges::any_of(lines.program->moves, moves);
+  });
+}
+
 /// Standard errors from the Jacobian; parameters that hardly change any time are marked as not determined.
 void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machine& base,
                 const std::vector<double>& logs, std::size_t count) {
@@ -338,7 +358,8 @@ void set_errors(LimitFit& fit, const std::vector<TimedLines>& data, const Machin
   // An axis that moves has a limit, even where its value is hardly known.
   for (int i = 0; i < n; ++i) {
     LimitParameter& p = fit.parameters[i];
-    p.poor = !p.determined && is_acceleration(p) && std::isinf(p.get(base)) && j.col(i).norm() > 0;
+    p.poor = !p.determined && is_acceleration(p) && std::isinf(p.get(base)) &&
+             (j.col(i).norm() > 0 || moves_in_logs(data, p));
     // Directions have length one: a lag that all axes share does not show.
     p.determined = (p.determined || p.poor) && !p.name.ends_with("position_gain_per_s");
   }
@@ -423,6 +444,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
     p.push_back(*law);
   }
   if (std::isfinite(machine.control.corner.stop_angle_rad)) p.push_back(stop_time_parameter());
+  if (machine.cycle.acceleration_law == machine::AccelerationLaw::bell) p.push_back(bell_time_parameter());
   if (logged)
     p.push_back(a_number(
         "control.rapid_change_ms", "ms", [](const Machine& m) { return 1000 * m.control.rapid_change_s; },

@@ -127,6 +127,10 @@ class SparseLog : public ::testing::Test {
       machine_.axis[i].position_gain_per_s = kGains[i];
     }
     machine_.control.corner = {.law = machine::CornerLaw::angle, .time_s = 0.006};
+    record();
+  }
+
+  void record() {
     tests::TestProgram p;
     for (int run = 0; run < 18; ++run) {
       Vec3 at = Vec3::Zero();
@@ -169,6 +173,17 @@ TEST_F(SparseLog, TellsAccelerationsOfAxesThatLagByDifferentTimes) {
   EXPECT_NEAR(model_s, time_s, 0.01 * time_s);
   // No block is short enough to show a longer one.
   EXPECT_LE(fit.machine.control.block_time_s, 0.001);
+}
+
+/// Such a control is slower at every change of speed than any corner law explains.
+TEST_F(SparseLog, TellsTheTimeInWhichTheAccelerationBuildsUp) {
+  machine_.cycle.acceleration_law = machine::AccelerationLaw::bell;
+  machine_.cycle.bell_time_s = 0.08;
+  record();
+  const FitFeedResult fit = fit_feed({}, {{"zigzags", run_.program, timed_}}, {}, {});
+  EXPECT_EQ(fit.law, "speed change by angle and bell ramps");
+  EXPECT_EQ(fit.machine.cycle.acceleration_law, machine::AccelerationLaw::bell);
+  EXPECT_NEAR(fit.machine.cycle.bell_time_s, 0.08, 0.02);
 }
 
 /// Errors of two kinds cancel each other over all parts, not in a program that has a few.
