@@ -73,10 +73,11 @@ bool is_to_cut(const nc::Interpretation& moves) {
   });
 }
 
-/// Returns the job with voxels that show where a tool meets a box or cylinder, in a few seconds.
+/// Returns the job with voxels that show where a tool meets a box or cylinder, in a few seconds; an allowance needs
+/// those of the job.
 machine::Job coarsened(machine::Job job) {
   constexpr double kOfSide = 1.0 / 300, kMost = 4;
-  if (!job.stock.box && !job.stock.cylinder) return job;
+  if ((!job.stock.box && !job.stock.cylinder) || job.stock.allowance_mm > 0) return job;
   const machine::Box box = *checks::stock_box(job);
   double& voxel_mm = job.simulation.voxel_mm;
   voxel_mm = std::clamp(kOfSide * (box.max_mm - box.min_mm).maxCoeff(), voxel_mm, kMost * voxel_mm);

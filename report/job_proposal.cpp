@@ -336,7 +336,7 @@ std::string job_text(const JobProposal& proposal) {
   }
   out += line(fmt::format("# operations = {{ tools = [{}] }}", cutting), "only these are simulated and compensated");
   out += tools + material_text(proposal.material, proposal.summary, by_number) + "\n[stock]\n" +
-         stock_text(proposal.summary, stock, allowance_mm(stock));
+         stock_text(proposal.summary, stock, turns_the_tool(proposal) ? 0 : allowance_mm(stock));
   out += simulation_text(stock, turns_the_tool(proposal)) + "\n[compensation]\n";
   out += line("tolerance_um = 5.0", "95 % of the surface; or profile_um = [-5, 10], the band that the drawing gives");
   return out + "max_shift_mm = 0.1\n";
