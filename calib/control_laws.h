@@ -46,10 +46,11 @@ std::vector<TriedLaw> try_laws(const std::vector<TimedLines>& data, const machin
                                const TracedAccelerations& acceleration, int max_iterations, std::size_t& best,
                                bool only_own = false);
 
-/// Tries, under the law of `standing`, a permitted speed difference for each axis, a stop at corners sharper than each
-/// wide gap between the corners of the programs, and corners under 5 degrees passed as none, one after the other. Keeps
-/// what lowers the held-out cost by 5 %.
-LimitFit try_details(const std::vector<TimedLines>& data, const LimitFit& standing, std::vector<TriedLaw>& tried,
-                     int max_iterations);
+/// Tries ramps whose acceleration builds up (AccelerationLaw::bell), where the times leave room for them, under every
+/// law that comes near to `standing`; then, under the law that was best, a permitted speed difference for each axis, a
+/// stop at corners sharper than each wide gap between the corners of the programs, and corners under 5 degrees passed
+/// as none, one after the other. Keeps what lowers the held-out cost by 5 %.
+LimitFit try_details(const std::vector<TimedLines>& data, const LimitFit& standing,
+                     const TracedAccelerations& acceleration, std::vector<TriedLaw>& tried, int max_iterations);
 
 }  // namespace camber::calib

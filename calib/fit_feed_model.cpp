@@ -272,6 +272,8 @@ Machine base_with_law(const Machine& start, const Machine& fitted) {
     Machine m = machine;
     m.control.corner.stop_angle_rad = corner.stop_angle_rad;
     m.control.corner.threshold_rad = corner.threshold_rad;
+    m.cycle.acceleration_law = fitted.cycle.acceleration_law;
+    m.cycle.bell_time_s = fitted.cycle.bell_time_s;
     for (std::size_t i = 0; i < m.axis.size(); ++i) {
       if (std::isinf(fitted.axis[i].speed_difference_mm_per_s)) continue;
       m.axis[i].speed_difference_mm_per_s = corner.speed_difference_mm_per_s;
@@ -290,10 +292,16 @@ LimitFit choose_law(FitFeedResult& result, const std::vector<TimedLines>& data, 
   LimitFit chosen = tried[best].fit;
   result.law = tried[best].name;
   if (chosen.machine.control.corner.law != machine::CornerLaw::blend && !only_own) {
-    const std::size_t laws = tried.size();
-    chosen = try_details(data, chosen, tried, max_iterations);
-    for (std::size_t i = laws; i < tried.size(); ++i)
-      if (tried[i].fit.held_out_cost == chosen.held_out_cost) result.law += tried[i].name.substr(1);
+    chosen = try_details(data, chosen, acceleration, tried, max_iterations);
+    const auto same = [&](const TriedLaw& law) {
+      const Machine &a = law.fit.whole, &b = chosen.whole;
+      return a.control.corner.law == b.control.corner.law && a.cycle.acceleration_law == b.cycle.acceleration_law;
+    };
+    for (const TriedLaw& law : tried) {
+      const bool detail = law.name.starts_with(' ');
+      if (!detail && same(law)) result.law = law.name;
+      if (detail && law.fit.held_out_cost == chosen.held_out_cost) result.law += law.name.substr(1);
+    }
   }
   for (const TriedLaw& law : tried) result.laws.push_back({law.name, law.held_out_percent, law.fit.held_out_cost});
   return chosen;
@@ -473,7 +481,8 @@ void add_jerk(FitFeedResult& result, const FittedValue& window_s) {
 /// acceleration from rest agrees with it, a limit of jerk.
 void add_smoothing(FitFeedResult& result, const std::vector<FeedRun>& runs,
                    const std::vector<const ServoTrace*>& traces) {
-  const auto rise_s = smoothing_time_s(traces);
+  const bool bell = result.machine.cycle.acceleration_law == machine::AccelerationLaw::bell;
+  const auto rise_s = bell ? std::nullopt : smoothing_time_s(traces);
   std::array<std::optional<FittedValue>, 3> ramps;
   bool any = false, agree = true;
   for (int axis = 0; axis < 3; ++axis) {

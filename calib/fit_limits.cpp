@@ -136,6 +136,12 @@ LimitParameter stop_time_parameter() {
       [](Machine& m, double v) { m.control.corner.stop_time_s = v / 1000; }, 0.1, 2000, 30);
 }
 
+LimitParameter bell_time_parameter() {
+  return a_number(
+      "cycle.bell_time_ms", "ms", [](const Machine& m) { return 1000 * m.cycle.bell_time_s; },
+      [](Machine& m, double v) { m.cycle.bell_time_s = v / 1000; }, 1, 500, 40);
+}
+
 bool is_acceleration(const LimitParameter& p) { return p.name.find(".acceleration_") != p.name.npos; }
 
 double scale_of(const TimedLines& lines, std::size_t part) {
@@ -423,6 +429,7 @@ std::vector<LimitParameter> limit_parameters(const Machine& machine, bool logged
     p.push_back(*law);
   }
   if (std::isfinite(machine.control.corner.stop_angle_rad)) p.push_back(stop_time_parameter());
+  if (machine.cycle.acceleration_law == machine::AccelerationLaw::bell) p.push_back(bell_time_parameter());
   if (logged)
     p.push_back(a_number(
         "control.rapid_change_ms", "ms", [](const Machine& m) { return 1000 * m.control.rapid_change_s; },

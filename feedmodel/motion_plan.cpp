@@ -31,10 +31,19 @@ PlanRow row_of(const Segment& s) {
           .entry_speed_mm_per_s = s.entry_limit_mm_per_s};
 }
 
-/// Returns the time by which each change of speed is longer than with constant acceleration.
-double delay_s(const machine::Machine& machine, std::size_t mode) {
-  const machine::AccelerationTimes law = acceleration_law_of(machine, mode);
-  return machine.cycle.jerk_filter_s + (law.law == AccelerationLaw::bell ? 0.5 * law.bell_time_s : 0.0);
+/// Returns half of the bell time: by so much a change of speed that reaches the full acceleration is longer.
+double build_up_s(const machine::AccelerationTimes& law) {
+  return law.law == AccelerationLaw::bell ? 0.5 * law.bell_time_s : 0.0;
+}
+
+/// Returns what a change of speed costs more than with constant acceleration, which has done it after `plain_s`, where
+/// the acceleration takes `build_up_s` to build up and as long to fall. The change takes plain_s + build_up_s or, where
+/// it ends before the full acceleration is reached, 2 sqrt(plain_s build_up_s): two parabolas of the speed. It covers
+/// more of the path at the mean of its speeds, which the higher one, that of the cruise, is spared.
+double bell_extra_s(double plain_s, double build_up_s, double from_mm_per_s, double to_mm_per_s) {
+  if (build_up_s <= 0 || plain_s <= kNoRamp) return 0;
+  const double longer_s = plain_s >= build_up_s ? build_up_s : 2 * std::sqrt(plain_s * build_up_s) - plain_s;
+  return longer_s * std::abs(to_mm_per_s - from_mm_per_s) / (2 * std::max(from_mm_per_s, to_mm_per_s));
 }
 
 /// Returns how long the slowest axis of a positioning still brakes when the next one may begin.
@@ -52,9 +61,14 @@ Trapezoid trapezoid_of(const PlanRow& row, double exit_speed_mm_per_s) {
                         row.acceleration_mm_per_s2);
 }
 
+/// Returns by how much a positioning is longer than with constant acceleration.
+double positioning_extra_s(const machine::Machine& machine) {
+  return 2.0 * machine.cycle.jerk_filter_s + build_up_s(acceleration_law_of(machine, 0));
+}
+
 SegmentMotion motion_in_row(const PlanRow& row, const SegmentTime& time, double exit_speed_mm_per_s,
                             const Segment& segment, const machine::Machine& machine) {
-  if (segment.axes_apart) return positioning_motion(segment, 2.0 * delay_s(machine, 0));
+  if (segment.axes_apart) return positioning_motion(segment, positioning_extra_s(machine));
   SegmentMotion motion;
   motion.duration_s = time.duration_s;
   if (time.rest) return motion;
@@ -72,8 +86,15 @@ SegmentMotion motion_in_row(const PlanRow& row, const SegmentTime& time, double 
     motion.time_scale = time.duration_s > 0 ? motion.along.duration_s() / time.duration_s : 1.0;
     return motion;
   }
-  motion.accelerate_extra_s = time.accelerates ? delay_s(machine, time.mode) : 0.0;
-  motion.brake_extra_s = time.brakes ? delay_s(machine, time.mode) : 0.0;
+  const double extra_s = std::max(0.0, time.duration_s - motion.along.duration_s());
+  // Where a row has both, the braking begins in it.
+  if (motion.along.accelerate_s > kNoRamp && motion.along.brake_s > kNoRamp)
+    motion.brake_extra_s =
+        std::min(extra_s, machine.cycle.jerk_filter_s + bell_extra_s(motion.along.brake_s, build_up_s(law),
+                                                                     motion.along.peak, motion.along.exit));
+  else if (motion.along.brake_s > kNoRamp)
+    motion.brake_extra_s = extra_s;
+  motion.accelerate_extra_s = extra_s - motion.brake_extra_s;
   return motion;
 }
 
@@ -85,7 +106,6 @@ class Planner {
     if (kinematics::has_rotary_motion(program, machine)) map_.emplace(machine, program);
     for (std::size_t mode = 0; mode <= machine.modes.size(); ++mode) {
       laws_.push_back(acceleration_law_of(machine, mode));
-      delay_s_.push_back(delay_s(machine, mode));
     }
   }
 
@@ -223,7 +243,7 @@ class Planner {
   void time_positioning(std::size_t i) {
     const Segment& s = at(i).segment;
     SegmentTime& time = at(i).time;
-    const SegmentMotion motion = positioning_motion(s, 2.0 * delay_s_[0]);
+    const SegmentMotion motion = positioning_motion(s, positioning_extra_s(machine_));
     time.duration_s = motion.duration_s;
     time.start_s = now_s_ - std::min(overlap_s_, motion.axes_s / 2.0);
     const double percent = machine_.cycle.rapid_overlap_percent;
@@ -294,6 +314,7 @@ class Planner {
     const Trapezoid profile = profile_at(i);
     time.start_s = start_of(i, profile);
     if (time.rest) return;
+    time.duration_s = profile.duration_s();
     const auto begins = [&](int kind, double phase_s) {
       if (phase_s <= kNoRamp) return false;
       const bool begun = kind != 0 && kind != ramp_;
@@ -301,11 +322,21 @@ class Planner {
       return begun;
     };
     time.accelerates = begins(+1, profile.accelerate_s);
+    time.duration_s += ramp_extra_s(time.accelerates, profile.accelerate_s, profile.entry, profile.peak, time.mode);
     begins(0, profile.cruise_s);
     time.brakes = begins(-1, profile.brake_s);
-    const int changes = (time.accelerates ? 1 : 0) + (time.brakes ? 1 : 0);
-    speed_changes_ += static_cast<std::size_t>(changes);
-    time.duration_s = profile.duration_s() + changes * delay_s_[time.mode];
+    time.duration_s += ramp_extra_s(time.brakes, profile.brake_s, profile.peak, profile.exit, time.mode);
+    speed_changes_ += std::size_t{time.accelerates} + std::size_t{time.brakes};
+  }
+
+  /// Returns what the next part of the change of speed under way costs more than with constant acceleration.
+  double ramp_extra_s(bool begins, double plain_s, double from_mm_per_s, double to_mm_per_s, std::size_t mode) {
+    if (plain_s <= kNoRamp) return 0;
+    if (begins) change_ = {.from_mm_per_s = from_mm_per_s};
+    change_.plain_s += plain_s;
+    const double before_s = change_.extra_s;
+    change_.extra_s = bell_extra_s(change_.plain_s, build_up_s(laws_[mode]), change_.from_mm_per_s, to_mm_per_s);
+    return (begins ? machine_.cycle.jerk_filter_s : 0.0) + std::max(0.0, change_.extra_s - before_s);
   }
 
   /// A start from (almost) rest waits for the next period of the control: after a rest or a positioning always, after
@@ -350,7 +381,6 @@ class Planner {
   const nc::Interpretation& program_;
   const machine::Machine& machine_;
   std::vector<machine::AccelerationTimes> laws_;  ///< one per mode
-  std::vector<double> delay_s_;                   ///< one per mode
   std::optional<kinematics::JointMap> map_;       // of a program with rotary motion
   std::vector<Stretch> stretches_;                // in order
   std::vector<Stop> stops_;                       // in order
@@ -366,8 +396,12 @@ class Planner {
   std::size_t next_stop_ = 0, next_stretch_ = 0;
   ReachableSpeed reachable_;
   double now_s_ = 0, overlap_s_ = 0;
-  double speed_ = 0;                // at the end of the last block, under the exponential law
-  int ramp_ = 0;                    // the change of speed under way: +1 accelerating, -1 braking
+  double speed_ = 0;  // at the end of the last block, under the exponential law
+  int ramp_ = 0;      // the change of speed under way: +1 accelerating, -1 braking
+  struct SpeedChange {
+    double from_mm_per_s = 0, plain_s = 0, extra_s = 0;  ///< so far
+  };
+  SpeedChange change_;              // under way
   std::optional<double> begins_s_;  // the next segment, while the one before it brakes
   std::size_t speed_changes_ = 0;
 };
