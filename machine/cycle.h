@@ -10,7 +10,7 @@ enum class RapidPath { dogleg, linear };
 
 /// linear: constant acceleration along the path, with lookahead. exponential: after interpolation, two first-order lags
 /// in series (Yan & Shirase 1997, eqs. 2-5), block by block. bell: as linear, but the acceleration takes bell_time_s to
-/// build up and to fall, which makes each change of speed longer by half of that.
+/// build up and to fall, so that a change of speed that reaches it takes half of that longer.
 enum class AccelerationLaw { linear, exponential, bell };
 
 /// An acceleration law with its times, as Cycle has them.
