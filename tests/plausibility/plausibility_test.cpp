@@ -323,9 +323,12 @@ TEST(Plausibility, StockThatLiesElsewhereOrIsTooSmall) {
             "p.nc:6: warning: 55 % of the cutting path runs beside or above the stock: the tip cuts from X2.00 Y2.00 "
             "Z-8.65 to X38.00 Y18.00 Z20.00, the stock lies from X24.00 Y0.00 Z-20.00 to X64.00 Y20.00 Z2.00; a stock "
             "around the path, elsewhere by X-24.00 Y0.00, was expected [stock-place]\n");
-  // Half of the rows are cut.
-  EXPECT_EQ(roof("[[0, 0, -20], [40, 20, 2]]", "[[0, -9, -20], [40, 11, 2]]", "stock-place"), "");
-  EXPECT_EQ(roof("[[0, 0, -20], [40, 20, 2]]", "[[-14, 0, -20], [26, 20, 2]]", "stock-place"), "");
+  EXPECT_EQ(roof("[[0, 0, -20], [40, 20, 2]]", "[[0, -9, -20], [40, 11, 2]]", "stock-place"),
+            "p.nc:67: warning: 31 % of the cutting path runs beside or above the stock: the tip cuts from X2.00 Y2.00 "
+            "Z-8.65 to X38.00 Y18.00 Z20.00, the stock lies from X0.00 Y-9.00 Z-20.00 to X40.00 Y11.00 Z2.00; a stock "
+            "around the path, elsewhere by X0.00 Y9.00, was expected [stock-place]\n");
+  // No more than a tool's diameter, as runs in and out are.
+  EXPECT_EQ(roof("[[0, 0, -20], [40, 20, 2]]", "[[-7, -3, -20], [33, 17, 2]]", "stock-place"), "");
   EXPECT_EQ(
       of_check(said({.job = replaced(kPocket, "[[-30, -20, -15], [30, 20, 0]]", "[[-19, -11, -5.9], [19, 11, 0]]"),
                      .program = pocket_rows()}),
