@@ -34,10 +34,9 @@ void look_at_roughed_top(const Evidence& e, Diagnostics& diagnostics) {
 }
 
 /// Returns how far the stock would have to lie elsewhere, mm, where the path stands out of it on one side by more than
-/// runs in and out do and leaves some of it on the other.
+/// the tool that mills most, as runs in and out may, and leaves some of it on the other.
 Vec3 lies_aside_mm(const Evidence& e, const nc::Extents& tips) {
-  double clear_mm = 0;
-  for (const ToolWork& work : e.tools) clear_mm = std::max(clear_mm, work.tool->diameter_mm);
+  const double clear_mm = std::ranges::max_element(e.tools, {}, &ToolWork::milling_mm)->tool->diameter_mm;
   Vec3 out = Vec3::Zero();
   for (const Eigen::Index a : {0, 1}) {
     const double below = e.stock->min_mm[a] - tips.min_mm[a], above = tips.max_mm[a] - e.stock->max_mm[a];
