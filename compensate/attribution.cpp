@@ -174,8 +174,8 @@ void set_place(Observation& o, const removal::SurfacePoint& point, const ShiftPa
 
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,
-                 std::span<const Vec3> bending, const std::vector<bool>& first_cuts) {
+                 std::span<const removal::SurfacePoint> surface, const OwnerHints& hints) {
+  const auto& [own_target, bending, first_cuts] = hints;
   const Places places(path, job, given, emitted, map, own_target, first_cuts);
   const Rows rows(path);
   Observed out;

@@ -50,15 +50,22 @@ std::vector<bool> reach_of(const ShiftPath& path, const nc::Interpretation& give
 /// Returns the fraction of the judged surface that one row makes on the nominal path and a neighbouring one has cut.
 double foreign_fraction(const Observed& observed);
 
+/// What tells whose a point is, beside the stamps that cut it.
+struct OwnerHints {
+  std::span<const simulate::PathFraction> own_target{};  ///< Target::stamps, if it is the given program's own; or empty
+  /// One per stamp of the nominal path, or empty: no hidden points; see hidden_rows.h.
+  std::span<const Vec3> bending{};
+  /// One per move of the given program, or empty: moves that are cut again. What they cut last counts as not cut, and
+  /// belongs to the run that cuts again where no stamp of the nominal sweep does.
+  const std::vector<bool>& first_cuts = kNone;
+
+  static inline const std::vector<bool> kNone{};
+};
 /// Attributes a point to the stamp that cut the machined surface there. Where none did, or material is left and the
-/// stamp of the nominal sweep is of another row, the point belongs to that stamp, which should have removed it, if the
-/// target is the given program's own (`own_target`: Target::stamps; else empty) and its flutes reach there. `map`: from
-/// the emitted program's moves to those of `path`. `bending` (one per stamp of the nominal path, or empty: no hidden
-/// points): see hidden_rows.h. `first_cuts` (one per move of `given`, or empty): moves that are cut again; what they
-/// cut last counts as not cut, and belongs to the run that cuts again where no stamp of the nominal sweep does.
+/// stamp of the nominal sweep is of another row, the point belongs to that stamp, which should have removed it, if it
+/// is known and its flutes reach there. `map`: from the emitted program's moves to those of `path`.
 Observed observe(const ShiftPath& path, const machine::Job& job, const simulate::SimulatedProgram& given,
                  const simulate::SimulatedProgram& emitted, const nc::MoveMap& map,
-                 std::span<const removal::SurfacePoint> surface, std::span<const simulate::PathFraction> own_target,
-                 std::span<const Vec3> bending = {}, const std::vector<bool>& first_cuts = {});
+                 std::span<const removal::SurfacePoint> surface, const OwnerHints& hints);
 
 }  // namespace camber::compensate

@@ -34,7 +34,7 @@ Recheck recheck(double voxel_mm, const ShiftedProgram& of, const EmittedPair& em
     auto prediction = simulate::predict_surface(of.predictor, other, target, machined, progress,
                                                 fmt::format("{}, voxels of {:g} mm", what, voxel_mm));
     Observed observed = observe(path, of.job, given, machined, program ? program->map : nc::MoveMap(),
-                                prediction.surface, stamps, {}, of.first_cuts);
+                                prediction.surface, {stamps, {}, of.first_cuts});
     if (reach.empty()) reach = reach_of(path, given.moves_in_part(), observed, prediction.surface, stamps);
     observed.reach = reach;
     const ErrorSplit split = split_error(path, observed, own);

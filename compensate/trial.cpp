@@ -14,7 +14,7 @@ void Trial::keep(simulate::Prediction prediction) {
   unsettled = prediction.cut.unsettled;
   all_valid = prediction.validity.all();
   chip_mm3 = prediction.cut.chip_mm3;
-  stock_mm3 = prediction.cut.stock_mm3;
+  stock_mm3 = prediction.cut.stock_mm3 - prediction.cut.rapid_mm3;
   if (prediction.deflection_parts_um) part_yields = prediction.deflection_parts_um->survey;
 }
 
@@ -65,7 +65,7 @@ simulate::Prediction predict(const ShiftedProgram& from, const Emitted* emitted,
 Observed observe(const ShiftedProgram& from, const ShiftPath& path, const Emitted* emitted,
                  const std::vector<removal::SurfacePoint>& surface) {
   return observe(path, from.job, *from.program, emitted ? emitted->program : *from.program,
-                 emitted ? emitted->map : nc::MoveMap(), surface, from.stamps, from.bending, from.first_cuts);
+                 emitted ? emitted->map : nc::MoveMap(), surface, {from.stamps, from.bending, from.first_cuts});
 }
 
 }  // namespace camber::compensate

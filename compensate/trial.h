@@ -36,7 +36,7 @@ struct Trial {
   int static_rounds = 0;
   std::size_t unsettled = 0;
   bool all_valid = true;                                    ///< the model holds everywhere (simulate/validity.h)
-  double chip_mm3 = 0, stock_mm3 = 0;                       ///< volume of the chips and volume lost by the stock
+  double chip_mm3 = 0, stock_mm3 = 0;                       ///< volume of the chips, and of the stock that they leave
   std::shared_ptr<const simulate::PartSurvey> part_yields;  ///< null: the part is rigid
   Observed observed;
 

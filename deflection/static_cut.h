@@ -47,8 +47,9 @@ class ReadingPace {
 
   struct Reading {
     double glance = 0;
-    double error_um = 0;    ///< error of the extrapolated deflection, rms over the cut
-    double allowed_um = 0;  ///< largest permitted error
+    double error_um = 0;           ///< error of the extrapolated deflection, rms over the cut
+    double allowed_um = 0;         ///< largest permitted error
+    double allowed_steady_um = 0;  ///< the same where the deflection hardly changes from reading to reading
     bool settled = true;
   };
   void was_read(std::size_t passing, const removal::Stamp& stamp, std::span<const float> row, const Reading& reading);
@@ -79,7 +80,7 @@ class ReadingPace {
   };
   Tooth& tooth(std::size_t passing) { return of_tooth_[passing % of_tooth_.size()]; }
   const Tooth& tooth(std::size_t passing) const { return of_tooth_[passing % of_tooth_.size()]; }
-  std::size_t next_gap(std::size_t turns, const Reading& reading) const;
+  std::size_t next_gap(std::size_t turns, double allowed_um) const;
 
   std::size_t longest_;
   std::size_t gap_ = 1;  ///< turns from reading to reading
@@ -143,16 +144,16 @@ class StaticEquilibrium {
   Vec2 at_ring(const std::vector<double>& deflection, const Ring& ring, std::size_t m) const;
   double lean_mm(const Element& e, std::size_t m) const;
   void balance(std::size_t m);
-  /// Contribution of one element to the balance of the axial deflection, and to the derivatives of that balance.
-  struct AxialChange {
-    double own, side;  ///< derivatives of the thickness by the axial deflections of this step and of its neighbours
+  /// Derivatives of an element's thickness by the deflections of its own rotation step, and of those beside it.
+  struct ThicknessChange {
+    std::array<double, 4> own{}, side{};  ///< by the lateral ones, at the first and at the last node
+    double own_axial = 0, side_axial = 0;
   };
-  void balance_axial(std::size_t m, double force_z, double slope_z, const std::array<double, 4>& by_own,
-                     const std::array<double, 4>& by_side, const AxialChange& by_axial);
+  /// Contribution of one element to the balance of the axial deflection, and to the derivatives of that balance.
+  void balance_axial(std::size_t m, double force_z, double slope_z, const ThicknessChange& by);
   double balance_all();
   void gather_part(const Element& e, std::size_t m, const Vec2& force, double force_z, const Vec2& slope,
-                   double slope_z, const std::array<double, 4>& by_own, const std::array<double, 4>& by_side,
-                   const AxialChange& by_axial);
+                   double slope_z, const ThicknessChange& by);
   void balance_part(std::size_t m);
   void keep_part(double share, std::span<float> row) const;
   template <int kUnknowns>
@@ -215,6 +216,7 @@ struct SettleOptions {
                            ///< cut, or by less than ...
   double settle_fraction = 0.01;                    ///< ... this fraction of its rms
   double follow_um = 0.1, follow_fraction = 0.02;   ///< permitted error of an extrapolated deflection, likewise
+  double follow_steady_fraction = 0.08;             ///< the same where it hardly changes from reading to reading
   std::size_t longest_gap = ReadingPace::kLongest;  ///< largest number of passings from reading to reading
 };
 
@@ -226,15 +228,20 @@ struct SettleOptions {
 /// was read is carved, and carved together with it.
 class StaticCut {
  public:
+  /// The whole run.
+  struct Path {
+    std::span<const removal::Stamp> stamps;
+    std::int32_t first_id = 0;  ///< of the first stamp
+    const removal::KnownRun* known = nullptr;
+  };
   StaticCut(removal::Stock& stock, const removal::Stock& blank, const removal::EnvelopeGrid& envelope,
-            const ToothPassModel& model, std::span<const removal::Stamp> stamps, std::int32_t first_id,
-            const SettleOptions& options, const RunOutOffsets& run_out, std::size_t different_teeth = 1,
-            const removal::KnownRun* known = nullptr)
-      : stamps_(stamps),
+            const ToothPassModel& model, const Path& path, const SettleOptions& options, const RunOutOffsets& run_out,
+            std::size_t different_teeth = 1)
+      : stamps_(path.stamps),
         options_(options),
         run_out_(run_out),
         envelope_(envelope),
-        engager_(stock, blank, envelope, stamps, first_id, known),
+        engager_(stock, blank, envelope, path.stamps, path.first_id, path.known),
         equilibrium_(envelope, model),
         pace_(different_teeth, options.longest_gap) {}
 

@@ -240,24 +240,24 @@ void StaticEquilibrium::balance(std::size_t m) {
     // Thickness by the deflections at the first and the last node, of this rotation step and of those beside it.
     const Vec2 own = !by_cap ? e.deeper : first_stamp_ ? Vec2(Vec2::Zero()) : e.normal;
     const double up = ring.height_fraction;
-    std::array<double, 4> by_own{(1 - up) * own.x(), (1 - up) * own.y(), up * own.x(), up * own.y()}, by_side{};
+    ThicknessChange by{.own = {(1 - up) * own.x(), (1 - up) * own.y(), up * own.x(), up * own.y()}};
     const bool leans = by_cap && std::abs(lean) < max_lean_mm_;
     if (leans) {
       const double along = e.by_height * nodes_apart;
       for (std::size_t a = 0; a < 2; ++a) {
         const double n = e.normal[static_cast<Eigen::Index>(a)];
-        by_own[a] += along * n;
-        by_own[2 + a] -= along * n;
-        by_side[a] = -e.by_step * (1 - up) * n;
-        by_side[2 + a] = -e.by_step * up * n;
+        by.own[a] += along * n;
+        by.own[2 + a] -= along * n;
+        by.side[a] = -e.by_step * (1 - up) * n;
+        by.side[2 + a] = -e.by_step * up * n;
       }
     }
-    AxialChange by_axial{};
     if (axial_) {
-      by_axial = {!by_cap ? e.deeper_z : first_stamp_ ? 0.0 : e.normal_z, leans ? -e.by_step * e.normal_z : 0.0};
+      by.own_axial = !by_cap ? e.deeper_z : first_stamp_ ? 0.0 : e.normal_z;
+      by.side_axial = leans ? -e.by_step * e.normal_z : 0.0;
       const auto along = [&](const EdgeForce& of) { return -(of.radial_N * e.normal_z + of.axial_N * e.meridian_z); };
-      balance_axial(m, along(f), e.width_mm * along(k), by_own, by_side, by_axial);
-      if (part_) gather_part(e, m, force, along(f), slope, e.width_mm * along(k), by_own, by_side, by_axial);
+      balance_axial(m, along(f), e.width_mm * along(k), by);
+      if (part_) gather_part(e, m, force, along(f), slope, e.width_mm * along(k), by);
     }
     for (std::size_t n = 0; n < nodes_; ++n) {
       const Vec2 c = model_.compliance_mm_per_N(e.ring, n);
@@ -267,41 +267,38 @@ void StaticEquilibrium::balance(std::size_t m) {
         const double change = c[a] * slope[a];
         double* of_own = by_own_.data() + 4 * (from + row);
         double* of_side = by_side_.data() + 4 * (from + row);
-        for (std::size_t b = 0; b < 4; ++b) of_own[b] += change * by_own[b];
+        for (std::size_t b = 0; b < 4; ++b) of_own[b] += change * by.own[b];
         if (leans)
-          for (std::size_t b = 0; b < 4; ++b) of_side[b] += change * by_side[b];
+          for (std::size_t b = 0; b < 4; ++b) of_side[b] += change * by.side[b];
         if (!axial_) continue;
-        by_own_axial_[from + row] += change * by_axial.own;
-        by_side_axial_[from + row] += change * by_axial.side;
+        by_own_axial_[from + row] += change * by.own_axial;
+        by_side_axial_[from + row] += change * by.side_axial;
       }
     }
   }
 }
 
-void StaticEquilibrium::balance_axial(std::size_t m, double force_z, double slope_z,
-                                      const std::array<double, 4>& by_own, const std::array<double, 4>& by_side,
-                                      const AxialChange& by_axial) {
+void StaticEquilibrium::balance_axial(std::size_t m, double force_z, double slope_z, const ThicknessChange& by) {
   const double c = model_.axial_compliance_mm_per_N(), change = c * slope_z;
   axial_left_[m] += c * force_z;
   for (std::size_t b = 0; b < 4; ++b) {
-    axial_by_own_[5 * m + b] += change * by_own[b];
-    axial_by_side_[5 * m + b] += change * by_side[b];
+    axial_by_own_[5 * m + b] += change * by.own[b];
+    axial_by_side_[5 * m + b] += change * by.side[b];
   }
-  axial_by_own_[5 * m + 4] += change * by_axial.own;
-  axial_by_side_[5 * m + 4] += change * by_axial.side;
+  axial_by_own_[5 * m + 4] += change * by.own_axial;
+  axial_by_side_[5 * m + 4] += change * by.side_axial;
 }
 
 /// Adds the force of an element to what the part's heights take.
 void StaticEquilibrium::gather_part(const Element& e, std::size_t m, const Vec2& force, double force_z,
-                                    const Vec2& slope, double slope_z, const std::array<double, 4>& by_own,
-                                    const std::array<double, 4>& by_side, const AxialChange& by_axial) {
+                                    const Vec2& slope, double slope_z, const ThicknessChange& by) {
   const std::size_t size = part_->size();
   const auto add = [&](std::size_t i, double f, double change) {
     const std::size_t at = m * size + i;
     part_N_[at] += f;
     double *own = part_by_own_.data() + 5 * at, *side = part_by_side_.data() + 5 * at;
-    for (std::size_t b = 0; b < 4; ++b) own[b] += change * by_own[b], side[b] += change * by_side[b];
-    own[4] += change * by_axial.own, side[4] += change * by_axial.side;
+    for (std::size_t b = 0; b < 4; ++b) own[b] += change * by.own[b], side[b] += change * by.side[b];
+    own[4] += change * by.own_axial, side[4] += change * by.side_axial;
   };
   const HeightWeight& w = part_ring_[e.ring];
   for (std::size_t a = 0; a < 2; ++a) {

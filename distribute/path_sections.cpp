@@ -94,10 +94,11 @@ std::size_t stamps_in(const SectionPlace& place) {
   return out;
 }
 
-/// Each of a section's pieces carved alone out of `raw`; `use(run, part)` for each.
+/// Each of a section's pieces carved alone out of `raw`; `use(run, part)` for each. Returns the volume, mm^3.
 template <class Use>
-void sweep_pieces(const Stock& raw, const Job& job, const PathStretch& path, const SectionPlace& place,
-                  double shrink_mm, double& removed_mm3, SectionWork& work, Stage& stage, const Use& use) {
+double sweep_pieces(const Stock& raw, const Job& job, const PathStretch& path, const SectionPlace& place,
+                    double shrink_mm, SectionWork& work, Stage& stage, const Use& use) {
+  double removed_mm3 = 0;
   for (std::size_t p = place.own.begin; p < place.own.end; ++p) {
     cancellation_point();
     const StretchPiece& piece = place.pieces[p];
@@ -113,6 +114,7 @@ void sweep_pieces(const Stock& raw, const Job& job, const PathStretch& path, con
     stage.advance(piece.count);
     use(piece.run, std::move(part));
   }
+  return removed_mm3;
 }
 
 /// `own(part)` for each piece of the section.
@@ -122,8 +124,7 @@ SweptSection swept_path(const Job& job, const Stock& raw, const PathStretch& pat
   SweptSection out;
   removal::JoinedParts joined;
   std::optional<std::size_t> of_run;
-  double ignored_mm3 = 0;
-  sweep_pieces(raw, job, path, place, 0, ignored_mm3, out.work, stage, [&](std::size_t run, StockPart part) {
+  sweep_pieces(raw, job, path, place, 0, out.work, stage, [&](std::size_t run, StockPart part) {
     if (of_run && *of_run != run) out.stock.push_back(joined.take());
     of_run = run;
     own(part);
@@ -313,8 +314,8 @@ SweptSection sweep_section(const Job& job, const SectionPrograms& programs, std:
   SweptSection out = swept_path(job, raw.stock, path, place, stage, own);
   const auto joined = [&](const PathStretch& of, const SectionPlace& where, double shrink_mm, double& removed_mm3) {
     removal::JoinedParts parts;
-    sweep_pieces(raw.stock, job, of, where, shrink_mm, removed_mm3, out.work, stage,
-                 [&](std::size_t, StockPart part) { parts.add(std::move(part)); });
+    removed_mm3 += sweep_pieces(raw.stock, job, of, where, shrink_mm, out.work, stage,
+                                [&](std::size_t, StockPart part) { parts.add(std::move(part)); });
     return parts.take();
   };
   out.target = joined(nominal.stretch(), nominal.place, 0, out.target_mm3);

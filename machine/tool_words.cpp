@@ -139,6 +139,9 @@ std::optional<double> find_size(const std::string& words, std::string pattern, b
   return size_mm(m[1].str(), m[2].str(), inch);
 }
 
+/// ".505", ".250": nobody writes millimetres to the micrometre without a zero before the point.
+bool written_as_inches(const std::string& number) { return number.front() == '.' && number.size() > 3; }
+
 /// The bare size that Mastercam begins with; in inches where it has the sign.
 void read_bare_size(const std::string& words, bool inch, ToolProposal& tool) {
   static const std::regex kSize(std::string(R"(^[\s|]*)") + kNumber + kUnit + R"((?=[\s|]|$))");
@@ -150,6 +153,9 @@ void read_bare_size(const std::string& words, bool inch, ToolProposal& tool) {
   if (inch && unit.empty() && *size >= kLargestBareInch) {
     tool.doubt = fmt::format("the size {} has no unit in a program in inches; taken as mm", m[1].str());
     inch = false;
+  } else if (!inch && unit.empty() && written_as_inches(m[1].str())) {
+    tool.doubt = fmt::format("the size {} has no unit in a program in millimetres; taken as inches", m[1].str());
+    inch = true;
   }
   tool.diameter_mm = size_mm(m[1].str(), unit, inch);
 }

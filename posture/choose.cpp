@@ -88,20 +88,29 @@ Knots knots_of(std::span<const PathPoint> points) {
 /// The chosen directions: a shortest path through (point, direction).
 class Chooser {
  public:
-  Chooser(std::span<const PathPoint> points, const Knots& knots, const Directions& directions,
-          const ClearDirections& clear, std::size_t tool_index, const Surroundings& surroundings, const ToolShape& tool,
-          const machine::Machine& machine, const LagError& lag, const PostureOptions& options)
-      : all_(points),
-        surroundings_(surroundings),
+  /// What is the same for all tools.
+  struct Choice {
+    std::span<const PathPoint> points;
+    const Knots& knots;
+    const Directions& directions;
+    const ClearDirections& clear;
+    const Surroundings& surroundings;
+    const machine::Machine& machine;
+    const LagError& lag;
+    const PostureOptions& options;
+  };
+  Chooser(const Choice& of, std::size_t tool_index, const ToolShape& tool)
+      : all_(of.points),
+        surroundings_(of.surroundings),
         tool_(tool),
-        machine_(machine),
-        lag_(lag),
-        options_(options),
-        directions_(directions),
-        clear_(clear),
+        machine_(of.machine),
+        lag_(of.lag),
+        options_(of.options),
+        directions_(of.directions),
+        clear_(of.clear),
         tool_index_(tool_index),
-        knots_(knots.of),
-        points_(knots.points) {}
+        knots_(of.knots.of),
+        points_(of.knots.points) {}
 
   Postures run() {
     Postures out, best;
@@ -495,11 +504,10 @@ std::vector<Postures> choose_postures(std::span<const PathPoint> points, const S
   for (std::size_t first = 0; first < tools.size(); first += ClearDirections::kMaxTools) {
     const auto some = tools.subspan(first, std::min(tools.size() - first, ClearDirections::kMaxTools));
     const ClearDirections clear(knots.points, surroundings, some, directions, lag.any() ? kFarthestLate : kFarthest);
+    const Chooser::Choice choice{points, knots, directions, clear, surroundings, machine, lag, options};
     Stage stage("choosing directions", some.size());
     tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
-      const auto chosen = [&](const ToolShape& tool) {
-        return Chooser(points, knots, directions, clear, i, surroundings, tool, machine, lag, options).run();
-      };
+      const auto chosen = [&](const ToolShape& tool) { return Chooser(choice, i, tool).run(); };
       out[first + i] = chosen(some[i]);
       if (lag.any()) {
         // The steps of the grid stand for even turns, and one direction for the whole path is not among them.

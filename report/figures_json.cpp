@@ -268,6 +268,7 @@ std::string predict_json(const simulate::SimulatedProgram& program, const simula
   j["chip_thickness_mm"] = {{"max", s.chip_max_mm}};
   j["specific_energy_MPa"] = s.specific_energy_MPa;
   j["removed_mm3"] = {{"path", chips_mm3(p)}, {"stock", p.cut.stock_mm3}};
+  if (p.cut.rapid_mm3 > 0) j["removed_mm3"]["rapid"] = p.cut.rapid_mm3;
   if (p.holes.any()) j["holes"] = holes(p.holes);
   j["form_error_um"] = form_error(p);
   j["deflection_um"] = figures_json(p.deflection_um);
@@ -303,10 +304,14 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
   std::string out = fmt::format("machine time {:.1f} s, cutting {:.1f} s; computed in {:.1f} s\n", program.feed.time_s,
                                 program.feed.cutting_time_s, compute_s);
   const SpindleFigures s = spindle_figures(program, p);
-  const double balance = p.cut.stock_mm3 > 0 ? 100 * (p.cut.chip_mm3 / p.cut.stock_mm3 - 1) : 0;
+  const double milled_mm3 = p.cut.stock_mm3 - p.cut.rapid_mm3;
+  const double balance = milled_mm3 > 0 ? 100 * (p.cut.chip_mm3 / milled_mm3 - 1) : 0;
   if (p.validity.all())
-    fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %)\n",
-                   p.cut.chip_mm3, p.cut.stock_mm3, balance);
+    fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %{})\n",
+                   p.cut.chip_mm3, p.cut.stock_mm3, balance,
+                   p.cut.rapid_mm3 > 0
+                       ? fmt::format(" without {:.3f} mm3 of the allowance that rapids end in", p.cut.rapid_mm3)
+                       : "");
   else
     fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the stock\n", p.cut.stock_mm3);
   const bool no_forces = simulate::forces_beyond_model(p), no_errors = simulate::beyond_model(p);

@@ -172,13 +172,12 @@ void CutTool::keep_turn(std::span<const removal::ChipSample> chips, std::span<co
 
 CutResult cut(Stock& stock, const machine::Tool& tool, const machine::Material& material, std::span<const Stamp> stamps,
               std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options) {
-  return cut_range(stock, tool, material, stamps, 0, stamps.size(), contacts, first_id, options);
+  return cut_range(stock, tool, material, {stamps, 0, stamps.size(), contacts, first_id}, options);
 }
 
-CutResult cut_range(Stock& stock, const machine::Tool& tool, const machine::Material& material,
-                    std::span<const Stamp> stamps, std::size_t first, std::size_t count,
-                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options,
-                    const BendBefore* before) {
+CutResult cut_range(Stock& stock, const machine::Tool& tool, const machine::Material& material, const StampRange& range,
+                    const CutOptions& options) {
+  const auto& [stamps, first, count, contacts, first_id, before] = range;
   CutResult result;
   result.loads.reserve(count);
   Cutter cutter(stock, tool, material, stamps, options);

@@ -94,6 +94,7 @@ struct CutResult {
   std::vector<StampLoad> loads_at_ratio;          ///< one per stamp; empty without CutOptions::chip_ratio
   double chip_mm3 = 0;                            ///< sum over the chips
   double stock_mm3 = 0;                           ///< change of the stock that engagement reads
+  double rapid_mm3 = 0;                           ///< of it: allowance that rapids end in, without chips; see judge()
   std::size_t read = 0;                           ///< tooth passings whose chips were read from the stock
   deflection::ReadingPace::Errors extrapolation;  ///< static: of the deflections of the others
   int rounds_max = 0;                             ///< of the static solution: readings of a tooth passing's chips

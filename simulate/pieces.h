@@ -84,12 +84,18 @@ struct PieceCut {
 CutResult cut_piece(removal::Stock& stock, const machine::Job& job, const motion::PathStretch& path,
                     const PieceCut& piece);
 
-/// Cuts stamps from ... from + count - 1 alone, as cut() does. Those before them are in the stock, and `before` says
-/// how they were bent, where that is known; contacts and loads are those of these stamps.
+/// Stamps from ... from + count - 1 of a run. Those before them are in the stock, and `before` says how they were bent,
+/// where that is known; contacts (one per stamp, or empty) are those of these stamps.
+struct StampRange {
+  std::span<const removal::Stamp> run;
+  std::size_t from = 0, count = 0;
+  std::span<const Contact> contacts{};
+  std::int32_t first_id = 0;  ///< of the run
+  const BendBefore* before = nullptr;
+};
+/// Cuts them alone, as cut() does; loads are those of these stamps.
 CutResult cut_range(removal::Stock& stock, const machine::Tool& tool, const machine::Material& material,
-                    std::span<const removal::Stamp> stamps, std::size_t from, std::size_t count,
-                    std::span<const Contact> contacts, std::int32_t first_id, const CutOptions& options,
-                    const BendBefore* before = nullptr);
+                    const StampRange& range, const CutOptions& options);
 
 /// Adds what a run, or a part of one, has given. In the order of the path.
 void add_piece(const removal::ToolRun& run, CutResult piece, PathLoads& out);

@@ -459,8 +459,9 @@ CutResult cut_piece(removal::Stock& stock, const Job& job, const motion::PathStr
   }
   if (piece.turn_from && *piece.turn_from >= run.from) options.turn_from = *piece.turn_from - run.from;
   const std::vector<Contact> contacts = find_contacts(*piece.target, tool, stamps.subspan(piece.from, piece.count));
-  return cut_range(stock, tool, job.material, stamps, piece.from, piece.count, contacts,
-                   static_cast<std::int32_t>(run.from), options, piece.bend);
+  return cut_range(stock, tool, job.material,
+                   {stamps, piece.from, piece.count, contacts, static_cast<std::int32_t>(run.from), piece.bend},
+                   options);
 }
 
 namespace {
@@ -536,6 +537,34 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
 
 namespace {
 
+/// Volume of the allowance in which cutters stand right after a rapid, mm^3, less the chips that are counted there. A
+/// cutter that reaches deeper into the blank than the allowance does not count.
+double allowance_at_rapids_mm3(const Job& job, const removal::Stock& blank, const removal::StampPath& path,
+                               std::span<const StampLoad> loads) {
+  constexpr double kDeeper = 0.1;  // of what it takes
+  const double allowance_mm = job.stock.allowance_mm;
+  removal::Stock stock(blank);
+  double sum = 0;
+  for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    const removal::CutterShape shape = removal::shape_of(tool);
+    const auto take = [&](std::size_t from, std::size_t count, double shrink_mm) {
+      return removal::sweep(stock, shape, stamps.subspan(from, count),
+                            {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(run.from + from)});
+    };
+    for (std::size_t from = 0; from < stamps.size();) {
+      std::size_t end = from + 1;
+      while (end < stamps.size() && !stamps[end].first) ++end;
+      if (run.kind == removal::RunKind::milling && stamps[from].first) {
+        const double deeper = take(from, 1, allowance_mm), taken = take(from, 1, 0);
+        if (deeper <= kDeeper * taken) sum += std::max(0.0, taken - loads[run.from + from].chip_mm3);
+      }
+      take(from, end - from, 0);
+      from = end;
+    }
+  });
+  return sum;
+}
+
 Prediction::ContourFigures contour_figures(const std::vector<removal::SurfacePoint>& surface) {
   std::vector<double> lag, tolerance, corner, area;
   for (const removal::SurfacePoint& p : surface) {
@@ -574,6 +603,9 @@ Prediction judge(const Job& job, const Target& target, const SimulatedProgram& p
   CriticalDepths own;
   out.chatter = find_chatter(job, program, out.cut.loads, target.critical_depths ? *target.critical_depths : own);
   out.validity = find_validity(job, program, out.cut, out.chatter.invalid_stamps, out.surface);
+  if (job.stock.allowance_mm > 0 && out.validity.all() && !program.path.stamps.empty() &&
+      imbalance(out.cut.chip_mm3, out.cut.stock_mm3, job.simulation.voxel_mm) < -kMaxImbalance)
+    out.cut.rapid_mm3 = allowance_at_rapids_mm3(job, target.blank, program.path, out.cut.loads);
   std::vector<double> error_um, deflection_um, contour_um, area;
   for (auto* values : {&error_um, &deflection_um, &contour_um, &area}) values->reserve(out.surface.size());
   for (const auto& p : out.surface) {

@@ -30,8 +30,9 @@ class StaticCoupling : public Coupling {
     DeflectionTable& deflections = stretch.deflections;
     std::vector<StampLoad>& loads = stretch.loads;
     if (!static_cut_) {
-      static_cut_.emplace(tool_.stock, *tool_.blank, tool_.envelope, tool_.model, all, stretch.first_id,
-                          settle_options(), tool_.run_out, tool_.different_teeth, tool_.options.known);
+      static_cut_.emplace(tool_.stock, *tool_.blank, tool_.envelope, tool_.model,
+                          StaticCut::Path{all, stretch.first_id, tool_.options.known}, settle_options(), tool_.run_out,
+                          tool_.different_teeth);
       static_cut_->remember(from, before.rows, deflections.row_size(), before.largest_mm);
     }
     // Loads between two readings lie between theirs; each stretch of passings ends with readings.
@@ -82,6 +83,7 @@ class StaticCoupling : public Coupling {
     }
     behind.wait();
     fill_between(read, result.loads, loads);
+    bend_between(read, deflections);
     result.extrapolation = static_cut_->extrapolation_errors();
   }
 
@@ -101,6 +103,21 @@ class StaticCoupling : public Coupling {
           a >= 0 ? loads[static_cast<std::size_t>(a)] : before[before.size() - static_cast<std::size_t>(-a)];
       loads[static_cast<std::size_t>(k)] = between(earlier, loads[static_cast<std::size_t>(b)],
                                                    static_cast<double>(period) / static_cast<double>(b - a));
+    }
+  }
+
+  /// The same of the deflections, which leave the marks: extrapolated ones carve the stock until the next reading.
+  void bend_between(std::span<const char> read, DeflectionTable& deflections) const {
+    const auto period = static_cast<std::ptrdiff_t>(tool_.different_teeth),
+               count = static_cast<std::ptrdiff_t>(read.size());
+    for (std::ptrdiff_t k = period - 1; k < count; ++k) {
+      if (read[static_cast<std::size_t>(k)] != 0) continue;
+      std::ptrdiff_t b = k + period;
+      while (read[static_cast<std::size_t>(b)] == 0) b += period;
+      const float way = static_cast<float>(period) / static_cast<float>(b - k + period);
+      const float *earlier = deflections.row(k - period), *later = deflections.row(b);
+      float* row = deflections.row(k);
+      for (std::size_t i = 0; i < deflections.row_size(); ++i) row[i] = earlier[i] + way * (later[i] - earlier[i]);
     }
   }
 

@@ -506,6 +506,9 @@ bool Klartext::make_arc_of(ArcWords words, const BlockValues& b) {
   const bool by_radius = words.r_mm.has_value();
   const ArcResult result = make_arc(words);
   if (result.is_point) {
+    if (result.start_radius_mm == 0)
+      warn(statement_->begin, "arc-radius", "a circle from its own centre is no circle; a start beside CC was expected",
+           "arc-point");
     line_to(words.end_mm, given_axes(b), b);
     out_.moves.back().editable = false;
     return false;

@@ -1,4 +1,5 @@
 // Jobs of a part of a program: which surface is theirs, and operations by comment.
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -6,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "base/units.h"
 #include "tests/support/run_camber.h"
 
 namespace camber {
@@ -151,6 +153,23 @@ TEST(Region, ThatBeginsInTheMiddleOfACutIsWarnedOf) {
   EXPECT_NE(in_a_cut.find("camber: error: the chips add up to"), std::string::npos) << in_a_cut;
   EXPECT_EQ(said_of("[[7, 8]]"), "") << "the feed move before it ends beside the block";
   EXPECT_EQ(said_of("[[5, 8]]"), "");
+}
+
+TEST(Region, TheAllowanceInWhichARapidEndsIsNoChip) {
+  const TempFolder folder;
+  folder.write("p.nc", "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X4 Y0 Z5\nG0 Z-1\nG1 X12 F900\nG0 Z5\nM30\n");
+  folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
+  folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tool(1) +
+                               "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -8, -5], [8, 8, 0]]\n"
+                               "allowance_mm = 0.3\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"rigid\"\n");
+  const auto run = run_camber(folder, "predict job.toml -o r");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err.find("the chips add up to"), std::string::npos) << run.err;
+  // A cylinder of radius 2 and 1 mm deep, less what lies 0.3 mm inside of it or of the slot ahead.
+  const double ahead = 1.7 * std::sqrt(4 - 1.7 * 1.7) + 4 * std::asin(0.85);
+  const json removed = json::parse(file_text(folder / "r/summary.json"))["removed_mm3"];
+  EXPECT_NEAR(removed["rapid"].get<double>(), kPi * 4 - 0.7 * (kPi * 1.7 * 1.7 / 2 + ahead), 0.15);
+  EXPECT_NE(run.out.find(" mm3 of the allowance that rapids end in)"), std::string::npos) << run.out;
 }
 
 TEST(Region, ThatBeginsBehindARapidIntoTheStockIsWarnedOf) {

@@ -37,6 +37,8 @@ TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
       {" #30 DRILL   ", true, ToolType::drill, 0.1285 * 25.4, none},
       {" LET. B DRILL   ", true, ToolType::drill, 0.238 * 25.4, none},
       {" .2505\" REAMER   ", true, ToolType::drill, 0.2505 * 25.4, none},
+      {".505 REAM", false, ToolType::drill, 0.505 * 25.4, none},
+      {".5 BALL", false, ToolType::ball, 0.5, none},
       {" 1/4\" X .093\" CORNER ROUNDING E.M.   ", true, std::nullopt, 6.35, none},
       {" 1/4\" 2 FLUTE E.M. WITH .020\" X 45 DEG CHAMFERS   ", true, ToolType::flat, 6.35, none},
       {" 10. END_MILL_SPHER DIA. 10. ", false, ToolType::ball, 10.0, none},
@@ -74,6 +76,8 @@ TEST(ToolWords, AreReadAsTheirCamSystemsWriteThem) {
   EXPECT_EQ(tool_of_words("|    6. BALL END MILL", true).doubt,
             "the size 6. has no unit in a program in inches; taken as mm");
   EXPECT_EQ(tool_of_words("|    6. BALL END MILL", false).doubt, "");
+  EXPECT_EQ(tool_of_words(".505 REAM", false).doubt,
+            "the size .505 has no unit in a program in millimetres; taken as inches");
 }
 
 TEST(ToolComments, AreFoundAnywhereInAProgram) {

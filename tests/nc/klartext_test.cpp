@@ -256,6 +256,17 @@ TEST(Klartext, MachineCoordinatesAndTheEndOfTheTravel) {
   EXPECT_NEAR(moves[5].end_mm.z(), 15, 1e-12);
 }
 
+TEST(Klartext, AKnownDatumTellsNoHeightOfMachineCoordinates) {
+  InterpreterOptions options;
+  options.work_offsets_mm[54] = {100, 50, -300};
+  const Read r = read_lines(with_start("3 L X+90 FMAX M91\n4 L Z-1 FMAX M91\n"), options);
+  const auto& moves = r.moves.moves;
+  ASSERT_EQ(moves.size(), 3u);
+  EXPECT_FALSE(moves[1].reference);
+  EXPECT_NEAR(moves[1].end_mm.x(), -10, 1e-12);
+  EXPECT_TRUE(moves[2].reference);  // the height needs the tool's length
+}
+
 // --- flow -----------------------------------------------------------------------------------------------------------
 
 TEST(Klartext, LabelsRepeatsAndSubprograms) {
@@ -605,6 +616,12 @@ TEST(Klartext, CentresWithTheWrongSignAreNoticed) {
             Messages{"p.h:5:3: error: the radius of the arc is 10.0000 mm at its start and 30.0000 mm at its end; a "
                      "difference below 0.05 mm "
                      "was expected [arc-radius]"});
+}
+
+TEST(Klartext, ACircleFromItsOwnCentreIsSaid) {
+  EXPECT_EQ(said("3 CC X+0 Y+0\n4 C X+0 Y+0 DR+\n"),
+            Messages{"p.h:5:3: warning: a circle from its own centre is no circle; a start beside CC was expected "
+                     "[arc-radius]"});
 }
 
 TEST(Klartext, AValueOfTheMachineIsRefusedWhereAMoveDependsOnIt) {
