@@ -121,7 +121,7 @@ class Places {
     if (move >= first_cuts_.size()) return std::nullopt;
     const std::size_t start = path_.find(move, 0).lower;
     const auto chain = std::ranges::find_if(
-        path_.chains(), [&](const Chain& c) { return start >= c.from && start < c.from + c.count; });
+        path_.chains(), [&](const ShiftChain& c) { return start >= c.from && start < c.from + c.count; });
     const auto& points = path_.points();
     std::size_t nearest = chain->from;
     for (std::size_t i = chain->from; i + 1 < chain->from + chain->count; ++i)

@@ -47,8 +47,8 @@ struct Stretch {
 
 /// About a point of the path, within its chain.
 Stretch stretch_about(const ShiftPath& path, std::size_t point) {
-  const auto chain =
-      std::ranges::find_if(path.chains(), [&](const Chain& c) { return point >= c.from && point < c.from + c.count; });
+  const auto chain = std::ranges::find_if(
+      path.chains(), [&](const ShiftChain& c) { return point >= c.from && point < c.from + c.count; });
   const auto& points = path.points();
   const auto first_within = [&](double mm) {
     std::size_t i = point;

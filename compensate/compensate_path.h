@@ -109,7 +109,7 @@ struct FormFigures {
 };
 
 /// The emitted program of the best round.
-struct WrittenProgram {
+struct RewrittenProgram {
   std::string text;
   std::vector<std::uint32_t> block_of_line;  ///< by line of `text`, see nc::Emission; empty: the given program
   std::size_t blocks_before = 0, blocks_after = 0, blocks_changed = 0;
@@ -186,7 +186,7 @@ struct CompensationResult {
   std::vector<Round> rounds;             ///< rounds[0]: the given program
   std::size_t best = 0;                  ///< index into rounds
   std::vector<TimePoint> time_points{};  ///< only with a lever that takes time; ascending
-  WrittenProgram emitted;
+  RewrittenProgram emitted;
   FormFigures figures;
   CompensationVerdict verdict;
   SecondCuts passes;

@@ -22,10 +22,10 @@ struct Sample {
 
 class Chooser {
  public:
-  Chooser(std::span<const FeedUnit> units, std::span<const FeedPoint> points, std::span<const double> now,
+  Chooser(std::span<const FeedUnit> units, std::span<const SpeedPoint> points, std::span<const double> now,
           const FeedModel& model)
       : units_(units), model_(model), levels_(feed_levels(lowest(units))), of_unit_(units.size()) {
-    for (const FeedPoint& p : points) {
+    for (const SpeedPoint& p : points) {
       of_unit_[p.unit].push_back({p.error_mm / std::pow(now[p.unit], model.exponent), p.area_mm2});
       area_ += p.area_mm2;
     }
@@ -151,8 +151,8 @@ std::vector<double> feed_levels(double least) {
   return out;
 }
 
-FeedChoice choose_feeds(std::span<const FeedUnit> units, std::span<const FeedPoint> points, std::span<const double> now,
-                        const FeedModel& model, double budget_s, double wanted_mm) {
+FeedChoice choose_feeds(std::span<const FeedUnit> units, std::span<const SpeedPoint> points,
+                        std::span<const double> now, const FeedModel& model, double budget_s, double wanted_mm) {
   const Chooser chooser(units, points, now, model);
   double high = chooser.largest_mm(), low = wanted_mm;  // of tau
   bool reached = false;

@@ -16,7 +16,7 @@ struct FeedUnit {
 };
 
 /// A piece of surface that a unit makes.
-struct FeedPoint {
+struct SpeedPoint {
   std::size_t unit = 0;
   double error_mm = 0;  ///< magnitude of the error that the best shift leaves at the unit's present feed
   double area_mm2 = 0;
@@ -44,7 +44,7 @@ std::vector<double> feed_levels(double least);
 ///
 /// unit by unit along each chain (Viterbi), with lambda such that 5 % of the area stay over tau, and tau the least that
 /// the budget allows. `now`: the present fraction of each unit. time(u) = max(time_s, length / (u feed)).
-FeedChoice choose_feeds(std::span<const FeedUnit> units, std::span<const FeedPoint> points, std::span<const double> now,
-                        const FeedModel& model, double budget_s, double wanted_mm);
+FeedChoice choose_feeds(std::span<const FeedUnit> units, std::span<const SpeedPoint> points,
+                        std::span<const double> now, const FeedModel& model, double budget_s, double wanted_mm);
 
 }  // namespace camber::compensate

@@ -48,7 +48,7 @@ std::vector<double> corner_speeds(const ShiftPath& path, const nc::Interpretatio
 }
 
 /// Along a chain, each value becomes the lowest one within kNear_mm.
-void spread(const ShiftPath& path, const Chain& chain, std::vector<double>& speeds) {
+void spread(const ShiftPath& path, const ShiftChain& chain, std::vector<double>& speeds) {
   const auto& points = path.points();
   const std::vector<double> from(speeds.begin() + static_cast<std::ptrdiff_t>(chain.from),
                                  speeds.begin() + static_cast<std::ptrdiff_t>(chain.from + chain.count));
@@ -91,7 +91,7 @@ FeedLever::FeedLever(const ShiftPath& path, const simulate::SimulatedProgram& gi
   const auto& points = path.points();
   const std::vector<double> times = times_of(path, given);
   for (std::size_t c = 0; c < path.chains().size(); ++c) {
-    const Chain& chain = path.chains()[c];
+    const ShiftChain& chain = path.chains()[c];
     for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i) {
       const nc::Move& move = given.moves_in_part().moves[points[i].move];
       const bool whole = !splittable || move.kind == nc::MoveKind::arc;
@@ -112,7 +112,7 @@ FeedChoice FeedLever::choose(ShiftPath& path, std::span<const Observation> obser
   std::vector<double> now(units_.size(), 1.0);
   for (std::size_t i = 0; i < unit_of_.size(); ++i)
     if (unit_of_[i] != kNoUnit) now[unit_of_[i]] = path.points()[i].feed_fraction;
-  std::vector<FeedPoint> points;
+  std::vector<SpeedPoint> points;
   for (std::size_t i = 0; i < observations.size(); ++i)
     points.push_back({unit_of_[observations[i].place.lower + 1], std::abs(left_mm[i]), observations[i].area_mm2});
   FeedChoice out = choose_feeds(units_, points, now, model_, budget_s, wanted_mm);
@@ -168,7 +168,7 @@ void FeedLever::set_fractions(ShiftPath& path, std::span<const double> fractions
 std::vector<double> least_feeds(const ShiftPath& path, const nc::Interpretation& program,
                                 const machine::Machine& machine, double least) {
   std::vector<double> out = corner_speeds(path, program, machine);
-  for (const Chain& chain : path.chains()) spread(path, chain, out);
+  for (const ShiftChain& chain : path.chains()) spread(path, chain, out);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double feed = program.moves[path.points()[i].move].feed_mm_per_s;
     out[i] = feed > 0 ? std::clamp(out[i] / feed, kLowest * least, least) : least;

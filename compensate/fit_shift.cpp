@@ -52,7 +52,7 @@ std::vector<double> weight_about(const ShiftPath& path, std::span<const Observat
       own[at].area += fraction * o.area_mm2;
     }
   std::vector<Sums> about = own;
-  for (const Chain& c : path.chains()) {
+  for (const ShiftChain& c : path.chains()) {
     const std::size_t end = c.from + c.count;
     const auto fade = [&](std::size_t i) {
       return std::exp(-(points[i].along_mm - points[i - 1].along_mm) / kAbout_mm);
@@ -72,7 +72,7 @@ std::vector<double> weight_about(const ShiftPath& path, std::span<const Observat
   return out;
 }
 
-void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double soft_mu, double kappa,
+void add_stiffness(System& s, const ShiftPath& path, const ShiftChain& chain, double soft_mu, double kappa,
                    std::span<const double> weight, std::span<const double> stiffness) {
   const auto& points = path.points();
   for (std::size_t i = chain.from; i + 1 < chain.from + chain.count; ++i) {
@@ -85,7 +85,7 @@ void add_stiffness(System& s, const ShiftPath& path, const Chain& chain, double 
 }
 
 /// Both ends of a plunge are shifted across Z by the same.
-void add_plunges(System& s, const ShiftPath& path, const Chain& chain) {
+void add_plunges(System& s, const ShiftPath& path, const ShiftChain& chain) {
   constexpr double kRigid = 1e4;  // of what else holds the path
   double held = 0;
   for (std::size_t i = chain.from; i < chain.from + chain.count; ++i)
@@ -101,7 +101,7 @@ void add_plunges(System& s, const ShiftPath& path, const Chain& chain) {
 
 /// Holds at rest what hardly any surface faces: along a row of a ball the normals differ by a few degrees, and a shift
 /// of several times the error along the surface would explain what little the error varies across the row.
-void add_rest(System& s, const Chain& chain) {
+void add_rest(System& s, const ShiftChain& chain) {
   std::vector<Matrix3d> rest(chain.count);
   for (std::size_t k = 0; k < chain.count; ++k) {
     Matrix3d about = s.diagonal[chain.from + k];
@@ -142,7 +142,7 @@ class Chains {
     const auto& points = path.points();
     gain_.assign(points.size(), Matrix3d::Zero());
     inverse_.assign(points.size(), Matrix3d::Zero());
-    for (const Chain& c : path.chains())
+    for (const ShiftChain& c : path.chains())
       for (std::size_t i = c.from; i < c.from + c.count; ++i) {
         if (points[i].fixed) continue;
         Matrix3d d = s.diagonal[i];
@@ -154,7 +154,7 @@ class Chains {
 
   std::vector<Vec3> solve(const std::vector<Vec3>& right) const {
     std::vector<Vec3> x(right.size(), Vec3::Zero());
-    for (const Chain& c : path_.chains()) {
+    for (const ShiftChain& c : path_.chains()) {
       for (std::size_t i = c.from; i < c.from + c.count; ++i)
         x[i] = inverse_[i] * (i > c.from ? Vec3(right[i] - s_.upper[i - 1].transpose() * x[i - 1]) : right[i]);
       for (std::size_t i = c.from + c.count - 1; i-- > c.from;) x[i] -= gain_[i] * x[i + 1];
@@ -178,7 +178,7 @@ double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 std::vector<Vec3> applied(const System& s, const ShiftPath& path, std::span<const RowLink> links,
                           const std::vector<double>& stiffness, const std::vector<Vec3>& x) {
   std::vector<Vec3> out(x.size());
-  for (const Chain& c : path.chains())
+  for (const ShiftChain& c : path.chains())
     for (std::size_t i = c.from; i < c.from + c.count; ++i) {
       out[i] = s.diagonal[i] * x[i];
       if (i > c.from) out[i] += s.upper[i - 1].transpose() * x[i - 1];
@@ -234,17 +234,17 @@ std::vector<Vec3> fitted(const ShiftPath& path, std::span<const Observation> obs
     add_observation(s, path, o);
     area += o.area_mm2;
   }
-  for (const Chain& c : path.chains()) length += points[c.from + c.count - 1].along_mm;
+  for (const ShiftChain& c : path.chains()) length += points[c.from + c.count - 1].along_mm;
   const double rho = std::max(area, 1e-9) / std::max(length, 1e-9);
   const double mu = rho * options.smoothing_mm * options.smoothing_mm;
   const double kappa = mu / (options.decay_mm * options.decay_mm);
   const std::vector<double> weight = weight_about(path, observations);
-  for (const Chain& c : path.chains()) {
+  for (const ShiftChain& c : path.chains()) {
     add_rest(s, c);
     add_stiffness(s, path, c, mu, kappa, weight, options.stiffness);
   }
   const std::vector<double> between = add_links(s, mu, weight, options);
-  for (const Chain& c : path.chains()) add_plunges(s, path, c);
+  for (const ShiftChain& c : path.chains()) add_plunges(s, path, c);
   return solve(s, path, options.links, between, std::move(x));
 }
 

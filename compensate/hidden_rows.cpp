@@ -50,7 +50,7 @@ std::vector<Vec3> path_offsets(const ShiftPath& path, const simulate::SimulatedP
   // Where no tooth passing fell between two points, the offset is that of the point before.
   const std::vector<double> weight = means.weight;
   std::vector<Vec3> out = means.take();
-  for (const Chain& chain : path.chains())
+  for (const ShiftChain& chain : path.chains())
     for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i)
       if (weight[i] <= 0) out[i] = out[i - 1];
   return out;

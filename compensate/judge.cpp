@@ -34,7 +34,7 @@ bool is_better(const RoundFigures& r, const RoundFigures& best, double depth_lim
 /// Counts the places along the path where the feed fraction changes.
 std::size_t count_feed_changes(const ShiftPath& path) {
   std::size_t out = 0;
-  for (const Chain& chain : path.chains()) {
+  for (const ShiftChain& chain : path.chains()) {
     double now = 1;
     for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i) {
       if (path.points()[i].feed_fraction != now) ++out;

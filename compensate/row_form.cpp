@@ -24,7 +24,7 @@ template <class Sums>
 void spread_along(std::vector<Sums>& sums, const ShiftPath& path) {
   const auto& points = path.points();
   const std::vector<Sums> own = sums;
-  for (const Chain& c : path.chains()) {
+  for (const ShiftChain& c : path.chains()) {
     const auto pass = [&](std::size_t from, std::size_t count, int step) {
       Sums carried = own[from];
       for (std::size_t k = 1, i = from + static_cast<std::size_t>(step); k < count; ++k) {

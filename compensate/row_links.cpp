@@ -24,7 +24,7 @@ std::vector<RowPlace> places_of(const ShiftPath& path) {
   const auto& points = path.points();
   std::vector<RowPlace> out(points.size());
   for (std::size_t c = 0; c < path.chains().size(); ++c) {
-    const Chain& chain = path.chains()[c];
+    const ShiftChain& chain = path.chains()[c];
     const std::size_t end = chain.from + chain.count;
     for (std::size_t i = chain.from; i < end; ++i) {
       const auto &before = points[i > chain.from ? i - 1 : i], &after = points[i + 1 < end ? i + 1 : i];

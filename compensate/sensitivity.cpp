@@ -15,7 +15,7 @@ struct Sums {
 };
 
 /// Exponential averages forwards and backwards along a chain.
-void average(std::vector<Sums>& sums, const ShiftPath& path, const Chain& chain) {
+void average(std::vector<Sums>& sums, const ShiftPath& path, const ShiftChain& chain) {
   const auto& points = path.points();
   const std::vector<Sums> own(sums.begin() + static_cast<std::ptrdiff_t>(chain.from),
                               sums.begin() + static_cast<std::ptrdiff_t>(chain.from + chain.count));
@@ -65,7 +65,7 @@ void Sensitivity::learn(const ShiftPath& path, std::span<const Vec3> shifts_befo
   const double prior_mm2 = kPrior_mm * kPrior_mm;
   const double mean =
       (whole.products + prior_mm2 * whole.area) / std::max(whole.squares + prior_mm2 * whole.area, 1e-30);
-  for (const Chain& c : path.chains()) average(sums, path, c);
+  for (const ShiftChain& c : path.chains()) average(sums, path, c);
   for (std::size_t i = 0; i < gain_.size(); ++i) {
     const Sums& s = sums[i];
     const double prior = std::max(prior_mm2 * s.area, 1e-12);

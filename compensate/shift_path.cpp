@@ -108,7 +108,7 @@ void ShiftPath::set_shifts(std::span<const Vec3> shifts) {
 }
 
 void ShiftPath::keep_plunges() {
-  for (const Chain& chain : chains_)
+  for (const ShiftChain& chain : chains_)
     for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i)
       if (points_[i].plunge) points_[i].shift_mm.head<2>() = points_[i - 1].shift_mm.head<2>();
 }
@@ -297,14 +297,14 @@ std::vector<bool> ShiftPath::ends_of_moves() const {
 }
 
 void ShiftPath::keep_feed_changes(std::vector<bool>& kept) const {
-  for (const Chain& chain : chains_)
+  for (const ShiftChain& chain : chains_)
     for (std::size_t i = chain.from + 1; i + 1 < chain.from + chain.count; ++i)
       if (points_[i].move == points_[i + 1].move && points_[i].feed_fraction != points_[i + 1].feed_fraction)
         kept[i] = true;
 }
 
 void ShiftPath::keep_strays(double tolerance_mm, std::vector<bool>& kept) const {
-  for (const Chain& chain : chains_) {
+  for (const ShiftChain& chain : chains_) {
     std::size_t last = chain.from;
     for (std::size_t i = chain.from + 1; i < chain.from + chain.count; ++i) {
       if (!kept[i]) continue;
@@ -326,8 +326,8 @@ ShiftPath ShiftPath::thinned(const std::vector<bool>& kept) const {
   out.points_.clear();
   out.chains_.clear();
   std::vector<std::size_t> now(points_.size());
-  for (const Chain& chain : chains_) {
-    Chain thin{out.points_.size(), 0};
+  for (const ShiftChain& chain : chains_) {
+    ShiftChain thin{out.points_.size(), 0};
     for (std::size_t i = chain.from; i < chain.from + chain.count; ++i) {
       now[i] = out.points_.size();
       if (!kept[i]) continue;
@@ -349,7 +349,7 @@ std::vector<nc::MoveEdit> ShiftPath::edits(double tolerance_mm) const {
 
 std::vector<nc::MoveEdit> ShiftPath::edits(const std::vector<bool>& kept, double tolerance_mm) const {
   std::vector<nc::MoveEdit> out;
-  for (const Chain& chain : chains_) {
+  for (const ShiftChain& chain : chains_) {
     const std::size_t end = chain.from + chain.count;
     for (std::size_t first = chain.from; first + 1 < end;) {
       std::size_t last = first + 1;

@@ -25,7 +25,7 @@ struct ControlPoint {
 };
 
 /// One unbroken run of moves that may be shifted: points[from] ... points[from + count - 1].
-struct Chain {
+struct ShiftChain {
   std::size_t from = 0, count = 0;
 };
 
@@ -39,7 +39,7 @@ class ShiftPath {
 
   std::vector<ControlPoint>& points() { return points_; }
   const std::vector<ControlPoint>& points() const { return points_; }
-  const std::vector<Chain>& chains() const { return chains_; }
+  const std::vector<ShiftChain>& chains() const { return chains_; }
 
   /// The interval of points in which a place of the path lies: points()[lower] and points()[lower + 1].
   struct PointInterval {
@@ -86,7 +86,7 @@ class ShiftPath {
 
   const nc::Interpretation* program_;
   std::vector<ControlPoint> points_;
-  std::vector<Chain> chains_;
+  std::vector<ShiftChain> chains_;
   std::vector<std::size_t> first_of_move_;  ///< index of the point at each selected move's start
 };
 

@@ -15,7 +15,7 @@ std::size_t Splits::add_strays(const ShiftPath& path, double tolerance_mm) {
 ThinPath::ThinPath(const ShiftPath& whole, const std::vector<bool>& kept)
     : path_(whole.thinned(kept)), of_point_(whole.points().size()) {
   const auto& points = whole.points();
-  for (const Chain& c : whole.chains()) {
+  for (const ShiftChain& c : whole.chains()) {
     std::size_t last = c.from;
     for (std::size_t i = c.from; i < c.from + c.count; ++i) {
       if (!kept[i]) continue;

@@ -15,7 +15,7 @@ constexpr double kLeast = 0.5;
 
 struct Case {
   std::vector<FeedUnit> units;
-  std::vector<FeedPoint> points;
+  std::vector<SpeedPoint> points;
 };
 
 /// Each unit a chain of its own, so that a change of feed between units costs the same for every combination.
@@ -34,7 +34,7 @@ Case random_case(std::size_t count, unsigned seed) {
 double p95(const Case& c, const std::vector<double>& fraction) {
   std::vector<std::pair<double, double>> errors;
   double area = 0, over = 0;
-  for (const FeedPoint& p : c.points) {
+  for (const SpeedPoint& p : c.points) {
     errors.emplace_back(p.error_mm * std::pow(fraction[p.unit], kModel.exponent), p.area_mm2);
     area += p.area_mm2;
   }
@@ -94,7 +94,7 @@ TEST(FeedPlan, SpendsNoMoreThanTheToleranceTakes) {
 TEST(FeedPlan, KeepsFeedsTogetherAlongAChain) {
   // Every second of many short units has an error: a word for each would change the feed forty times.
   std::vector<FeedUnit> units;
-  std::vector<FeedPoint> points;
+  std::vector<SpeedPoint> points;
   for (std::size_t u = 0; u < 40; ++u) {
     units.push_back({.chain = 0, .length_mm = 0.1, .time_s = 0.1 / 15, .feed_mm_per_s = 15, .least = 0.2});
     points.push_back({u, u % 2 == 0 ? 0.01 : 0.001, 1.0});
@@ -110,14 +110,14 @@ TEST(FeedPlan, KeepsFeedsTogetherAlongAChain) {
 TEST(FeedPlan, TakesNoTimeWhereTheControlIsSlowerThanTheFeed) {
   // The axes reach a fifth of the feed here: half the feed costs nothing.
   const std::vector<FeedUnit> units{{.chain = 0, .length_mm = 1, .time_s = 1 / 3.0, .feed_mm_per_s = 15, .least = 0.5}};
-  const std::vector<FeedPoint> points{{0, 0.01, 1.0}};
+  const std::vector<SpeedPoint> points{{0, 0.01, 1.0}};
   const std::vector<double> now{1.0};
   EXPECT_EQ(choose_feeds(units, points, now, kModel, 0, 0).extra_s, 0);
 }
 
 TEST(FeedPlan, NoUnitIsSlowerThanItsLeast) {
   std::vector<FeedUnit> units;
-  std::vector<FeedPoint> points;
+  std::vector<SpeedPoint> points;
   for (std::size_t u = 0; u < 3; ++u) {
     units.push_back(
         {.chain = u, .length_mm = 1, .time_s = 1 / 15.0, .feed_mm_per_s = 15, .least = u == 1 ? 0.13 : 0.2});

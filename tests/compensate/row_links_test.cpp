@@ -173,7 +173,7 @@ TEST(FitShift, AHeavyPointDoesNotBendThePathMoreThanALightOne) {
     path.set_shifts(std::vector<Vec3>(path.points().size(), Vec3::Zero()));
     fit_shift(path, observations, {});
     double most = 0;
-    for (const Chain& c : path.chains())
+    for (const ShiftChain& c : path.chains())
       for (std::size_t i = c.from + 5; i + 2 < c.from + c.count; ++i)
         most = std::max(
             most,
