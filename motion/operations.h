@@ -9,7 +9,7 @@
 
 namespace camber::motion {
 
-/// The same operations without a regular expression: what it names becomes ranges of lines (nc/headings.h). Where no
+/// The same operations without a regular expression: what it names becomes ranges of lines. Where no
 /// line is left, the range [0, 0], which no move stands in.
 machine::Operations as_lines(const machine::Operations& operations, const nc::Program& program,
                              const nc::Interpretation& moves);
