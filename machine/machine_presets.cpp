@@ -254,6 +254,15 @@ max_rpm = 18000.0                       # 8000 to 30000: data sheets
 chip_to_chip_s = 5.5                    # 3 to 10: Takata 5.5
 )";
 
+/// Cycles by which programs of Heidenhain and Siemens give the tolerance, on machines of any control.
+constexpr std::string_view kToleranceCycles = R"(
+[control.mode.cycle32]
+corner = { law = "blend", tolerance_mm = 0.02 }  # 0.005 to 0.05: T of cycle 32 counts
+
+[control.mode.cycle832]
+corner = { law = "blend", tolerance_mm = 0.1 }  # 0.01 to 0.2: tolerance of CYCLE832 counts; else MD33100: 0.1
+)";
+
 /// Y is as X where a preset does not give it; the trunnion of "-bc" tilts about Y instead of X.
 std::string text_of(const MachinePreset& preset) {
   constexpr std::string_view kX = "[axis.x]\n";
@@ -263,6 +272,7 @@ std::string text_of(const MachinePreset& preset) {
                                                                          {"[1, 0, 0]", "[0, 1, 0]"},
                                                                          {"as A", "as B"}}};
   std::string out(preset.toml);
+  if (preset.name != "router" && out.find("[control.mode.") == std::string::npos) out += kToleranceCycles;
   const std::size_t x = out.find(kX) + kX.size(), z = out.find("[axis.z]");
   if (out.find("[axis.y]") == std::string::npos) out.insert(z, "[axis.y]\n" + out.substr(x, z - x));
   if (preset.name.ends_with("-bc"))

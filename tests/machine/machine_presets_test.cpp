@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "base/numbers.h"
@@ -27,6 +28,11 @@ TEST(MachinePreset, AreReadByTheirNames) {
     }
     EXPECT_EQ(assumptions(machine), std::vector<std::string>{"machine " + name + ", typical values of its class"});
     EXPECT_EQ(machine.kinematics.given(), preset.name.starts_with("five-axis"));
+    const auto has = [&](std::string_view mode) {
+      return std::ranges::any_of(machine.modes, [&](const auto& m) { return m.first == mode; });
+    };
+    EXPECT_EQ(has("cycle32"), preset.name != "router" && preset.name != "sinumerik-840d") << name;
+    EXPECT_EQ(has("cycle832"), preset.name != "router" && preset.name != "tnc-640") << name;
   }
 }
 
