@@ -110,19 +110,19 @@ TEST(HiddenRows, WhatARowWouldLeaveIsObservedBesideWhatTheSurfaceShows) {
   const std::vector<Vec3> bending{Vec3(0, 0, 0.020), Vec3::Zero()};
 
   const machine::Job job;
-  const Observed seen = observe(path, job, given, given, {}, surface, target, bending);
+  const Observed seen = observe(path, job, given, given, {}, surface, {target, bending});
   ASSERT_EQ(seen.hidden.size(), 2u) << "the row that cut its own point is not hidden";
   for (const Observation& o : seen.hidden) {
     EXPECT_DOUBLE_EQ(o.error_mm, 0.020);
     EXPECT_EQ(o.place.lower, path.find(first, 0.5).lower);
   }
   EXPECT_EQ(seen.of_path().size(), 4u) << "below and own as they are, above and below again";
-  EXPECT_TRUE(observe(path, job, given, given, {}, surface, target).hidden.empty()) << "without what bends it";
+  EXPECT_TRUE(observe(path, job, given, given, {}, surface, {target}).hidden.empty()) << "without what bends it";
 
   // What a first cut of the second row left last counts as not cut: the first row should have.
   std::vector<bool> first_cuts(given.moves_in_part().moves.size(), false);
   first_cuts[second] = true;
-  const Observed repeated = observe(path, job, given, given, {}, surface, target, {}, first_cuts);
+  const Observed repeated = observe(path, job, given, given, {}, surface, {target, {}, first_cuts});
   for (const Observation& o : repeated.points) EXPECT_EQ(o.place.lower, path.find(first, 0.5).lower);
 }
 
