@@ -159,9 +159,10 @@ TEST(Region, TheAllowanceInWhichARapidEndsIsNoChip) {
   const TempFolder folder;
   folder.write("p.nc", "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X4 Y0 Z5\nG0 Z-1\nG1 X12 F900\nG0 Z5\nM30\n");
   folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
-  folder.write("job.toml", "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tool(1) +
-                               "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -8, -5], [8, 8, 0]]\n"
-                               "allowance_mm = 0.3\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"rigid\"\n");
+  folder.write("job.toml",
+               "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tool(1) +
+                   "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -8, -5], [8, 8, 0]]\n"
+                   "allowance_mm = 0.3\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"rigid\"\ncollisions = \"off\"\n");
   const auto run = run_camber(folder, "predict job.toml -o r");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err.find("the chips add up to"), std::string::npos) << run.err;
