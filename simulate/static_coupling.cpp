@@ -1,4 +1,6 @@
 // Static coupling: the deflected cutter cuts, each tooth passing in its equilibrium.
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -19,15 +21,11 @@ using removal::Stamp;
 
 namespace {
 
-/// True where two deflections differ by a tenth, rms, at most.
-bool near(std::span<const float> a, std::span<const float> b) {
-  constexpr double kNear = 0.1;
-  double change2 = 0, size2 = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const auto now = static_cast<double>(b[i]), change = now - static_cast<double>(a[i]);
-    change2 += change * change, size2 += now * now;
-  }
-  return change2 <= kNear * kNear * size2;
+/// Largest of the absolute values.
+float largest(std::span<const float> values) {
+  float out = 0;
+  for (const float v : values) out = std::max(out, std::abs(v));
+  return out;
 }
 
 class StaticCoupling : public Coupling {
@@ -119,20 +117,23 @@ class StaticCoupling : public Coupling {
   }
 
   /// The same of the deflections, which leave the marks: extrapolated ones carve the stock until the next reading. They
-  /// stay where that is another one at once: the cut has changed there, not before.
+  /// stay at rotation steps at which that is another one at once: the cut has changed there, not before.
   void bend_between(std::span<const char> read, DeflectionTable& deflections) const {
+    constexpr float kAtOnce = 0.1f;  // of the largest deflection
     const auto period = static_cast<std::ptrdiff_t>(tool_.different_teeth),
                count = static_cast<std::ptrdiff_t>(read.size());
+    const std::size_t size = deflections.row_size();
     for (std::ptrdiff_t k = period - 1; k < count; ++k) {
       if (read[static_cast<std::size_t>(k)] != 0) continue;
       std::ptrdiff_t b = k + period;
       while (read[static_cast<std::size_t>(b)] == 0) b += period;
-      const std::size_t size = deflections.row_size();
-      const float *earlier = deflections.row(k - period), *later = deflections.row(b);
-      if (!near(std::span(deflections.row(b - period), size), std::span(later, size))) continue;
-      const float way = static_cast<float>(period) / static_cast<float>(b - k + period);
+      const float *earlier = deflections.row(k - period), *later = deflections.row(b),
+                  *foreseen = deflections.row(b - period);
+      const float way = static_cast<float>(period) / static_cast<float>(b - k + period),
+                  at_once = kAtOnce * std::max(largest({later, size}), largest({foreseen, size}));
       float* row = deflections.row(k);
-      for (std::size_t i = 0; i < size; ++i) row[i] = earlier[i] + way * (later[i] - earlier[i]);
+      for (std::size_t i = 0; i < size; ++i)
+        if (std::abs(later[i] - foreseen[i]) <= at_once) row[i] = earlier[i] + way * (later[i] - earlier[i]);
     }
   }
 

@@ -94,7 +94,7 @@ TEST(StaticCut, PassingsThatAreNotReadHaveTheLoadsOfThoseThatAre) {
     for (std::size_t k = 0; k < all.loads.size(); ++k) {
       EXPECT_NEAR(some.loads[k].lateral_max_N, all.loads[k].lateral_max_N, 0.04 * peak) << k;
       EXPECT_LT((some.loads[k].force_mean_N - all.loads[k].force_mean_N).norm(), 0.03 * mean) << k;
-      EXPECT_NEAR(some.loads[k].deflection_max_mm, all.loads[k].deflection_max_mm, 0.03 * all.deflection_max_mm) << k;
+      EXPECT_NEAR(some.loads[k].deflection_max_mm, all.loads[k].deflection_max_mm, 0.04 * all.deflection_max_mm) << k;
     }
     EXPECT_NEAR(some.chip_mm3, all.chip_mm3, 0.002 * all.chip_mm3);
     EXPECT_NEAR(some.stock_mm3, all.stock_mm3, 0.001 * all.stock_mm3);
