@@ -14,7 +14,7 @@ void Trial::keep(simulate::Prediction prediction) {
   unsettled = prediction.cut.unsettled;
   all_valid = prediction.validity.all();
   chip_mm3 = prediction.cut.chip_mm3;
-  stock_mm3 = prediction.cut.stock_mm3 - prediction.cut.rapid_mm3;
+  stock_mm3 = prediction.cut.milled_mm3();
   if (prediction.deflection_parts_um) part_yields = prediction.deflection_parts_um->survey;
 }
 

@@ -12,17 +12,6 @@ constexpr double kMotionChange = 0.1;     ///< fraction of the feed per tooth
 constexpr double kMaterialChange = 0.06;  ///< fraction of the glance
 constexpr double kCautious = 0.9, kFaster = 2;
 constexpr double kRemembered = 0.5;  ///< fraction of an error that is kept where the next one is smaller by chance
-constexpr double kSteady = 0.05;     ///< largest change from reading to reading, a fraction of the deflection
-
-/// True where two readings differ little.
-bool steady(std::span<const float> row, std::span<const float> last) {
-  double change2 = 0, size2 = 0;
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    const auto now = static_cast<double>(row[i]), change = now - static_cast<double>(last[i]);
-    change2 += change * change, size2 += now * now;
-  }
-  return change2 <= kSteady * kSteady * size2;
-}
 
 }  // namespace
 
@@ -71,8 +60,9 @@ void ReadingPace::Tooth::fit_slope(std::size_t passing, std::span<const float> r
 }
 
 /// The error of a line grows with the square of the passings that it bridges.
-std::size_t ReadingPace::next_gap(std::size_t turns, double allowed_um) const {
-  const double may = kCautious * std::sqrt(allowed_um / std::max(error_um_, 1e-9));
+std::size_t ReadingPace::next_gap(std::size_t turns, const Reading& reading) const {
+  if (!reading.settled) return 1;
+  const double may = kCautious * std::sqrt(reading.allowed_um / std::max(error_um_, 1e-9));
   const double gap = std::round(std::min(kFaster, may) * static_cast<double>(turns));
   return std::clamp<std::size_t>(static_cast<std::size_t>(gap), 1, longest_);
 }
@@ -86,8 +76,7 @@ void ReadingPace::was_read(std::size_t passing, const removal::Stamp& stamp, std
   if (t.readings > 1) {
     error_um_ = std::max(reading.error_um, kRemembered * error_um_);
     t.fit_slope(passing, row);
-    const double allowed_um = steady(row, t.last_row) ? reading.allowed_steady_um : reading.allowed_um;
-    if (reading.settled) gap_ = next_gap(turns, allowed_um);
+    gap_ = next_gap(turns, reading);
   }
   std::swap(t.before_row, t.last_row);
   t.last_row.assign(row.begin(), row.end());

@@ -125,7 +125,6 @@ StaticCut::Passing StaticCut::cut(std::size_t k) {
     if (++out.rounds == 1) {
       reading.error_um = step.rms_um;
       reading.allowed_um = std::max(options_.follow_um, options_.follow_fraction * step.size_um);
-      reading.allowed_steady_um = std::max(options_.follow_um, options_.follow_steady_fraction * step.size_um);
     }
     if (!(deflections_->largest_mm(at) <= removal::DeflectedEngager::kMaxDeflection_mm)) {
       out.reason = beyond_reach(row);

@@ -47,9 +47,8 @@ class ReadingPace {
 
   struct Reading {
     double glance = 0;
-    double error_um = 0;           ///< error of the extrapolated deflection, rms over the cut
-    double allowed_um = 0;         ///< largest permitted error
-    double allowed_steady_um = 0;  ///< the same where the deflection hardly changes from reading to reading
+    double error_um = 0;    ///< error of the extrapolated deflection, rms over the cut
+    double allowed_um = 0;  ///< largest permitted error
     bool settled = true;
   };
   void was_read(std::size_t passing, const removal::Stamp& stamp, std::span<const float> row, const Reading& reading);
@@ -80,7 +79,7 @@ class ReadingPace {
   };
   Tooth& tooth(std::size_t passing) { return of_tooth_[passing % of_tooth_.size()]; }
   const Tooth& tooth(std::size_t passing) const { return of_tooth_[passing % of_tooth_.size()]; }
-  std::size_t next_gap(std::size_t turns, double allowed_um) const;
+  std::size_t next_gap(std::size_t turns, const Reading& reading) const;
 
   std::size_t longest_;
   std::size_t gap_ = 1;  ///< turns from reading to reading
@@ -216,7 +215,6 @@ struct SettleOptions {
                            ///< cut, or by less than ...
   double settle_fraction = 0.01;                    ///< ... this fraction of its rms
   double follow_um = 0.1, follow_fraction = 0.02;   ///< permitted error of an extrapolated deflection, likewise
-  double follow_steady_fraction = 0.08;             ///< the same where it hardly changes from reading to reading
   std::size_t longest_gap = ReadingPace::kLongest;  ///< largest number of passings from reading to reading
 };
 

@@ -304,7 +304,7 @@ std::string predict_text(const simulate::SimulatedProgram& program, const simula
   std::string out = fmt::format("machine time {:.1f} s, cutting {:.1f} s; computed in {:.1f} s\n", program.feed.time_s,
                                 program.feed.cutting_time_s, compute_s);
   const SpindleFigures s = spindle_figures(program, p);
-  const double milled_mm3 = p.cut.stock_mm3 - p.cut.rapid_mm3;
+  const double milled_mm3 = p.cut.milled_mm3();
   const double balance = milled_mm3 > 0 ? 100 * (p.cut.chip_mm3 / milled_mm3 - 1) : 0;
   if (p.validity.all())
     fmt::format_to(std::back_inserter(out), "removed {:.3f} mm3 by the chips, {:.3f} mm3 by the stock ({:+.2f} %{})\n",

@@ -107,6 +107,7 @@ struct CutResult {
   double deflection_limit_mm = 0;            ///< smallest limit among those exceeded
   BendBefore bend;                           ///< static: at the end
   deflection::TurnForces turn;               ///< empty without CutOptions::turn_from
+  double milled_mm3() const { return stock_mm3 - rapid_mm3; }  ///< what chips describe
 };
 
 /// Thrown where a cut is given up: the tool comes to rest in hardly any tooth passing.

@@ -82,7 +82,7 @@ std::vector<std::string> doubts(const machine::Job& job, const SimulatedProgram&
   std::vector<std::string> out;
   if (!p.cut.beyond_stamps.empty()) out.push_back(deflection_sentence(program, p));
   if (!p.chatter.invalid_stamps.empty() && (beyond_model(p) || forces_beyond_model(p))) out.push_back(chatter_doubt(p));
-  const double milled_mm3 = p.cut.stock_mm3 - p.cut.rapid_mm3;
+  const double milled_mm3 = p.cut.milled_mm3();
   if (p.validity.all() && std::abs(imbalance(p.cut.chip_mm3, milled_mm3, job.simulation.voxel_mm)) > kMaxImbalance)
     out.push_back(imbalance_sentence(p.cut.chip_mm3, milled_mm3));
   if (p.surface.empty() && p.holes.surface_mm2 <= 0)
