@@ -85,6 +85,9 @@ class Surveyor {
 
  private:
   const std::vector<nc::Move>& moves() const { return program_.moves_in_part().moves; }
+  static bool upright(const nc::Move& m) {
+    return m.kind == nc::MoveKind::linear && (m.end_mm - m.start_mm).head<2>().isZero();
+  }
   bool cuts(std::uint32_t i) const { return program_.selected[i] || removal::makes_hole(program_.holes[i]); }
   const SurveyTool* tool_of(std::uint32_t i) const {
     const auto tool = tools_.find(program_.moves_in_part().state_of(moves()[i]).tool);
@@ -133,6 +136,7 @@ class Surveyor {
     if (!tool) return;
     MoveCut& m = out.moves[i];
     const double least = kStepError * heights_.cell_mm();
+    double& without = program_.selected[i] && upright(moves()[i]) ? m.approach_mm : m.beside_mm;
     Vec3 looked_at = Vec3::Constant(1e9);
     along(program_.moves_in_part(), i, tool->bottom, [&](const Vec3& tip, double step, double) {
       const HeightMap::Cut cut = heights_.cut(tool->bottom, tip);
@@ -142,7 +146,7 @@ class Surveyor {
       if (cut.deepest_mm > least)
         m.cutting_mm += step;
       else if (step > 0 && !blank_->touch(tool->bottom, tip))
-        m.beside_mm += step;
+        without += step;
       if (cut.deepest_mm > m.deepest_mm) m.deepest_mm = cut.deepest_mm, m.deepest_place = tip;
       if (cut.deepest_mm > options_.tolerance_mm) m.above_tip_mm = std::max(m.above_tip_mm, cut.above_tip_mm);
       if (program_.selected[i] && cut.deepest_mm > options_.tolerance_mm &&

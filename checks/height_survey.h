@@ -18,6 +18,7 @@ struct MoveCut {
   double length_mm = 0;               ///< of the move
   double cutting_mm = 0;              ///< of this length, where it removes material
   double beside_mm = 0;               ///< of this length, where the blank never had material for the cutter
+  double approach_mm = 0;             ///< the same of mills that move straight up or down; not in beside_mm
   double volume_mm3 = 0;              ///< removed
   double area_mm2 = 0;                ///< removed, seen from above
   double deepest_mm = 0;              ///< largest height of a removed column

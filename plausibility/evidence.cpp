@@ -58,6 +58,7 @@ void add_cut(const checks::MoveCut& m, double power_W, std::uint32_t move, ToolW
   work.cut.length_mm += m.length_mm;
   work.cut.cutting_mm += m.cutting_mm;
   work.cut.beside_mm += m.beside_mm;
+  work.cut.approach_mm += m.approach_mm;
   work.cut.volume_mm3 += m.volume_mm3;
   work.cut.area_mm2 += m.area_mm2;
   work.depth_mm.add(m.deepest_mm, m.cutting_mm);

@@ -76,7 +76,7 @@ void look_at_stock_place(const Evidence& e, Diagnostics& diagnostics) {
   constexpr double kOddAside = 0.2, kOdd = 0.5, kMeaningless = 0.75;
   if (!e.survey || e.elsewhere) return;
   double beside = 0, all = 0;
-  for (const ToolWork& work : e.tools) beside += work.cut.beside_mm, all += work.cut.length_mm;
+  for (const ToolWork& work : e.tools) beside += work.cut.beside_mm, all += work.cut.length_mm - work.cut.approach_mm;
   if (all <= 0 || beside <= kOddAside * all) return;
   const auto longest = std::ranges::max_element(e.survey->moves, {}, [](const auto& m) { return m.beside_mm; });
   const nc::Extents tips = checks::tip_extents(e.program.moves_in_part(), e.program.selected, e.program.holes);

@@ -253,11 +253,13 @@ class Proposer {
     return out;
   }
 
-  /// Returns the share of the cutting path on which the cutter is beside or above the box.
+  /// Returns the share of the cutting path, ways straight up and down apart, on which the cutter is beside or above
+  /// the box; of a program without any other, the share of these.
   double share_beside(const machine::Box& box) {
+    const bool across = std::ranges::any_of(moves_.moves, [](const nc::Move& m) { return is_cut(m) && is_lateral(m); });
     double beside_mm = 0, all_mm = 0;
     for (const nc::Move& m : moves_.moves) {
-      if (!is_cut(m)) continue;
+      if (!is_cut(m) || (across && !is_lateral(m))) continue;
       const double r = profile_of_move(m).radius_mm - kTouch_mm, length_mm = nc::length_mm(moves_, m);
       const int steps = std::clamp(static_cast<int>(std::ceil(length_mm / std::max(r, 1.0))), 1, 1000);
       all_mm += length_mm;

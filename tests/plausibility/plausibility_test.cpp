@@ -320,13 +320,17 @@ TEST(Plausibility, PartThatLiesElsewhere) {
 
 TEST(Plausibility, StockThatLiesElsewhereOrIsTooSmall) {
   EXPECT_EQ(roof("[[0, 0, -20], [40, 20, 2]]", "[[24, 0, -20], [64, 20, 2]]", "stock-place"),
-            "p.nc:6: warning: 55 % of the cutting path runs beside or above the stock: the tip cuts from X2.00 Y2.00 "
+            "p.nc:7: warning: 53 % of the cutting path runs beside or above the stock: the tip cuts from X2.00 Y2.00 "
             "Z-8.65 to X38.00 Y18.00 Z20.00, the stock lies from X24.00 Y0.00 Z-20.00 to X64.00 Y20.00 Z2.00; a stock "
             "around the path, elsewhere by X-24.00 Y0.00, was expected [stock-place]\n");
   EXPECT_EQ(roof("[[0, 0, -20], [40, 20, 2]]", "[[0, -9, -20], [40, 11, 2]]", "stock-place"),
-            "p.nc:67: warning: 31 % of the cutting path runs beside or above the stock: the tip cuts from X2.00 Y2.00 "
+            "p.nc:67: warning: 29 % of the cutting path runs beside or above the stock: the tip cuts from X2.00 Y2.00 "
             "Z-8.65 to X38.00 Y18.00 Z20.00, the stock lies from X0.00 Y-9.00 Z-20.00 to X40.00 Y11.00 Z2.00; a stock "
             "around the path, elsewhere by X0.00 Y9.00, was expected [stock-place]\n");
+  // Letters to and from which the cutter goes at the feed say nothing of the stock.
+  std::string letters = "G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS6000 M3\nG0 X-16 Y0 Z30\n";
+  for (int x = -16; x <= 16; x += 8) letters += fmt::format("G0 X{0} Y0\nG1 Z-1 F300\nY4\nG1 Z30\n", x);
+  EXPECT_EQ(of_check(said({.job = kPocket, .program = letters + "M30\n"}), "stock-place"), "");
   // No more than a tool's diameter, as runs in and out are.
   EXPECT_EQ(roof("[[0, 0, -20], [40, 20, 2]]", "[[-7, -3, -20], [33, 17, 2]]", "stock-place"), "");
   EXPECT_EQ(
