@@ -4,7 +4,7 @@
 #include <array>
 
 #include "nc/heidenhain/cursor.h"
-#include "nc/heidenhain/klartext_reader.h"
+#include "nc/heidenhain/klartext_tree.h"
 
 namespace camber::nc::heidenhain {
 namespace {
