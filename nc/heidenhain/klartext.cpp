@@ -21,8 +21,8 @@
 
 #include "nc/durations.h"
 #include "nc/heidenhain/heidenhain_language.h"
-#include "nc/heidenhain/klartext_cycles.h"
-#include "nc/heidenhain/klartext_path.h"
+#include "nc/heidenhain/klartext_flow.h"
+#include "nc/heidenhain/klartext_motion.h"
 
 namespace camber::nc::heidenhain {
 namespace {
@@ -48,13 +48,14 @@ class Klartext {
   Tools tools_{at_, modes_};
   DatumFrames frames_{at_, modes_, tools_};
   Mover mover_{at_, modes_, tools_, frames_};
-  RadiusCompensation compensation_{at_, modes_, tools_, mover_};
-  Orientation orientation_{at_, modes_, tools_, frames_, mover_, compensation_};
-  PathBlocks path_{at_, modes_, tools_, frames_, mover_, orientation_};
-  Contour contour_{at_, modes_, tools_, frames_, mover_, compensation_, path_};
+  MotionParts parts_{at_, modes_, tools_, frames_, mover_};
+  RadiusCompensation compensation_{parts_};
+  Orientation orientation_{parts_, compensation_};
+  PathBlocks path_{parts_, orientation_};
+  Contour contour_{parts_, compensation_, path_};
   Flow flow_;
-  Functions functions_{at_, modes_, tools_, compensation_, orientation_, flow_};
-  Cycles cycles_{at_, modes_, tools_, frames_, mover_, compensation_, orientation_, flow_};
+  Functions functions_{parts_, compensation_, orientation_, flow_};
+  Cycles cycles_{parts_, compensation_, orientation_, flow_};
   std::optional<Vec3> blank_min_mm_;
 };
 

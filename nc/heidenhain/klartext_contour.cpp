@@ -6,7 +6,7 @@
 
 #include "base/units.h"
 #include "nc/corner_cut.h"
-#include "nc/heidenhain/klartext_path.h"
+#include "nc/heidenhain/klartext_motion.h"
 #include "nc/plane_curves.h"
 
 namespace camber::nc::heidenhain {

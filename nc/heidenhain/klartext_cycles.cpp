@@ -1,5 +1,5 @@
 // Cycles: definitions, calls, patterns.
-#include "nc/heidenhain/klartext_cycles.h"
+#include "nc/heidenhain/klartext_flow.h"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "nc/heidenhain/klartext_cycles.h"
+#include "nc/heidenhain/klartext_flow.h"
 
 namespace camber::nc::heidenhain {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
-// Where programmed coordinates lie, and the moves of the tool and the rotary axes. Internal to heidenhain/.
+// Where programmed coordinates lie, the moves of the tool and the rotary axes, and the path blocks that make them.
+// Internal to heidenhain/.
 #include <array>
 #include <optional>
 #include <string>
@@ -116,11 +117,19 @@ class Mover {
   Vec3 beside_mm_ = Vec3::Zero();
 };
 
+/// The parts with which all those below make their moves.
+struct MotionParts {
+  StatementContext& at_;
+  Modes& modes_;
+  Tools& tools_;
+  DatumFrames& frames_;
+  Mover& mover_;
+};
+
 /// RL, RR, R0.
-class RadiusCompensation {
+class RadiusCompensation : MotionParts {
  public:
-  RadiusCompensation(StatementContext& at, Modes& modes, Tools& tools, Mover& mover)
-      : at_(at), modes_(modes), tools_(tools), mover_(mover) {}
+  explicit RadiusCompensation(const MotionParts& parts) : MotionParts(parts) {}
 
   bool active() const { return radius_.active; }
   bool moves_path() const { return radius_.active && radius_.radius_mm != 0; }
@@ -140,21 +149,16 @@ class RadiusCompensation {
     Plane plane = Plane::xy;
   };
 
-  StatementContext& at_;
-  Modes& modes_;
-  Tools& tools_;
-  Mover& mover_;
   Radius radius_;
   bool not_editable_told_ = false;
   int last_ = 1;
 };
 
 /// Rotary axes, tool directions, tilted planes, tool-centre-point control.
-class Orientation {
+class Orientation : MotionParts {
  public:
-  Orientation(StatementContext& at, Modes& modes, Tools& tools, DatumFrames& frames, Mover& mover,
-              RadiusCompensation& compensation)
-      : at_(at), modes_(modes), tools_(tools), frames_(frames), mover_(mover), compensation_(compensation) {}
+  Orientation(const MotionParts& parts, RadiusCompensation& compensation)
+      : MotionParts(parts), compensation_(compensation) {}
 
   bool turned() const { return direction_unknown_ || rotary_rad_ != Vec3::Zero(); }
   /// The direction of the tool where the program has given it as a vector.
@@ -173,15 +177,88 @@ class Orientation {
   void reset_tilt(Turn turn);
   void open_all_if_turned();
 
-  StatementContext& at_;
-  Modes& modes_;
-  Tools& tools_;
-  DatumFrames& frames_;
-  Mover& mover_;
   RadiusCompensation& compensation_;
   Vec3 rotary_rad_ = Vec3::Zero();
   bool direction_unknown_ = false;  ///< rotary axes stand where a direction has put them
   bool shortest_way_ = false;
+};
+
+// --- path blocks
+
+/// L, C, CR, CT, CP, LP and their kind; machine coordinates.
+class PathBlocks : MotionParts {
+ public:
+  PathBlocks(const MotionParts& parts, Orientation& orientation) : MotionParts(parts), orientation_(orientation) {}
+
+  void set_centre(const BlockValues& b);
+  Vec3 polar_target(const BlockValues& b);
+  void run_line(const BlockValues& b);
+  void run_circle(const BlockValues& b);
+  void run_radius_arc(const BlockValues& b);
+  void run_tangent_arc(const BlockValues& b, const Vec3& end);
+  void run_polar_circle(const BlockValues& b);
+  void retract(const BlockValues::Function& f, const BlockValues& b);
+
+ private:
+  void go_in_machine_frame(const BlockValues& b);
+  void run_untilted(const BlockValues& b);
+  void run_programmed_line(const BlockValues& b);
+  int sense_of(const BlockValues& b);
+
+  Orientation& orientation_;
+  Vec3 pole_mm_ = Vec3::Zero();  ///< programmed
+  bool pole_given_ = false, pole_from_here_ = false;
+  Plane pole_plane_ = Plane::xy;
+  int last_sense_ = 0;
+};
+
+/// RND and CHF between two blocks, APPR before one and DEP behind one.
+class Contour : MotionParts {
+ public:
+  Contour(const MotionParts& parts, RadiusCompensation& compensation, PathBlocks& path)
+      : MotionParts(parts), compensation_(compensation), path_(path) {}
+
+  void set_corner(const Statement& s, const BlockValues& b);
+  /// `feed_before`: of the block before it.
+  void start_approach(const Statement& s, const BlockValues& b, std::optional<double> feed_before);
+  /// `first`: of the moves that the block has made.
+  void after_move(std::size_t first);
+  void depart(const Statement& s, const BlockValues& b);
+  void finish();
+
+ private:
+  struct Corner {  ///< until the next block of the contour
+    bool waits = false, chamfer = false;
+    double size_mm = 0;
+    std::optional<double> feed_mm_per_s{};
+    std::size_t move = 0, offset = 0;
+    std::string text{};
+  };
+  enum class Form : std::uint8_t { tangent_line, normal_line, arc, line_and_arc };
+  struct Approach {  ///< until the next block of the contour
+    bool waits = false;
+    Form form = Form::tangent_line;
+    double length_mm = 0, radius_mm = 0, angle_rad = 0;
+    Vec3 from_mm = Vec3::Zero(), start_mm = Vec3::Zero();  ///< programmed: where the tool stands, PA
+    double side = 1;                                       ///< 1: on the left of the contour
+    bool has_side = true;                                  ///< RL or RR says it
+    double feed_mm_per_s = 0;
+    bool rapid = false;
+    double feed_there_mm_per_s = 0;  ///< to the auxiliary point PH
+    bool rapid_there = false;
+    std::size_t move = 0, offset = 0;
+    std::uint32_t block = 0;
+  };
+  std::optional<Form> read_form(const Statement& s, bool& polar);
+  bool positioned_at_rapid() const;
+  void finish_approach(std::size_t contour);
+  Vec3 tangent_point(const Vec3& centre, double radius, double sense, const Vec3& outside, bool arrives) const;
+  std::string text_of(const Statement& s) const;
+
+  RadiusCompensation& compensation_;
+  PathBlocks& path_;
+  Corner corner_;
+  Approach approach_;
 };
 
 }  // namespace camber::nc::heidenhain

@@ -1,5 +1,5 @@
 // Lines, arcs, poles; machine coordinates.
-#include "nc/heidenhain/klartext_path.h"
+#include "nc/heidenhain/klartext_motion.h"
 
 #include <algorithm>
 #include <cmath>
