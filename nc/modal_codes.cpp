@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace camber::nc {
 namespace {
@@ -161,124 +162,36 @@ std::vector<int> known_g_codes() {
 }
 
 std::string_view group_name(GGroup group) {
-  switch (group) {
-    case GGroup::motion:
-      return "motion";
-    case GGroup::cycle:
-      return "cycle";
-    case GGroup::plane:
-      return "plane";
-    case GGroup::distance:
-      return "distance";
-    case GGroup::arc_distance:
-      return "arc distance";
-    case GGroup::feed_mode:
-      return "feed mode";
-    case GGroup::unit:
-      return "unit";
-    case GGroup::cutter_radius:
-      return "cutter radius";
-    case GGroup::tool_length:
-      return "tool length";
-    case GGroup::work_offset:
-      return "work offset";
-    case GGroup::path_control:
-      return "path control";
-    case GGroup::return_level:
-      return "return level";
-    case GGroup::one_shot:
-      return "one block";
-    case GGroup::frame:
-      return "frame";
-    case GGroup::contouring:
-      return "contouring";
-    case GGroup::macro:
-      return "macro";
-    case GGroup::no_effect:
-      return "no effect";
-    case GGroup::not_read:
-      return "not read";
-    case GGroup::turning:
-      return "turning";
-    case GGroup::unknown:
-      break;
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 20> kNames{
+      // in the order of the enum
+      "motion",        "cycle",       "plane",       "distance",     "arc distance", "feed mode", "unit",
+      "cutter radius", "tool length", "work offset", "path control", "return level", "one block", "frame",
+      "contouring",    "macro",       "no effect",   "not read",     "turning",      "unknown"};
+  static_assert(kNames.size() == static_cast<std::size_t>(GGroup::unknown) + 1);
+  return kNames[static_cast<std::size_t>(group)];
 }
 
 std::string_view group_name(MGroup group) {
-  switch (group) {
-    case MGroup::stop:
-      return "stop";
-    case MGroup::end:
-      return "end";
-    case MGroup::spindle:
-      return "spindle";
-    case MGroup::tool:
-      return "tool";
-    case MGroup::coolant:
-      return "coolant";
-    case MGroup::no_effect:
-      return "no effect";
-    case MGroup::interruption:
-      return "interruption";
-    case MGroup::subprogram:
-      return "subprogram";
-    case MGroup::unknown:
-      break;
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, 9> kNames{
+      // in the order of the enum
+      "stop", "end", "spindle", "tool", "coolant", "no effect", "subprogram", "interruption", "unknown"};
+  static_assert(kNames.size() == static_cast<std::size_t>(MGroup::unknown) + 1);
+  return kNames[static_cast<std::size_t>(group)];
 }
 
 MGroup m_code(int tenths) {
-  switch (tenths) {
-    case 0:
-    case 10:
-    case 600:
-      return MGroup::stop;
-    case 20:
-    case 300:
-      return MGroup::end;
-    case 30:
-    case 40:
-    case 50:
-    case 130:
-    case 140:
-      return MGroup::spindle;
-    case 60:
-      return MGroup::tool;
-    case 70:
-    case 80:
-    case 90:
-      return MGroup::coolant;
-    case 100:
-    case 110:
-      return MGroup::no_effect;  // clamp, unclamp
-    case 190:
-      return MGroup::no_effect;  // spindle orientation
-    case 290:
-      return MGroup::no_effect;  // the tap that follows is rigid
-    case 400:
-    case 410:
-    case 420:
-    case 430:
-      return MGroup::no_effect;  // spindle gear
-    case 480:
-    case 490:
-    case 500:
-    case 510:
-    case 520:
-    case 530:
-      return MGroup::no_effect;  // overrides on, off
-    case 960:
-      return MGroup::interruption;
-    case 970:
-    case 980:
-    case 990:
-      return MGroup::subprogram;
-    default:
-      return MGroup::unknown;
-  }
+  using enum MGroup;
+  // Without effect: clamp and unclamp, spindle orientation, the tap that follows is rigid, spindle gear, overrides.
+  constexpr std::pair<int, MGroup> kCodes[] = {
+      {0, stop},         {10, stop},       {20, end},        {30, spindle},    {40, spindle},       {50, spindle},
+      {60, tool},        {70, coolant},    {80, coolant},    {90, coolant},    {100, no_effect},    {110, no_effect},
+      {130, spindle},    {140, spindle},   {190, no_effect}, {290, no_effect}, {300, end},          {400, no_effect},
+      {410, no_effect},  {420, no_effect}, {430, no_effect}, {480, no_effect}, {490, no_effect},    {500, no_effect},
+      {510, no_effect},  {520, no_effect}, {530, no_effect}, {600, stop},      {960, interruption}, {970, subprogram},
+      {980, subprogram}, {990, subprogram}};
+  for (const auto& [code, group] : kCodes)
+    if (code == tenths) return group;
+  return unknown;
 }
 
 }  // namespace camber::nc

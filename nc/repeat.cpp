@@ -1,6 +1,7 @@
 #include "nc/repeat.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <utility>
@@ -180,29 +181,20 @@ std::string without_number(std::string line) {
 }  // namespace
 
 std::string to_string(RunGap why) {
-  switch (why) {
-    case RunGap::not_in_text:
-      return "are made by a loop, an expression, a subprogram or a drilling cycle, or may be skipped";
-    case RunGap::cutter_radius:
-      return "run under cutter radius compensation (G41, G42)";
-    case RunGap::incremental:
-      return "are incremental (G91)";
-    case RunGap::other_codes:
-      return "have M, S, T or H words among them";
-    case RunGap::no_rapid_before:
-      return "do not begin behind a rapid";
-    case RunGap::no_rapid_behind:
-      return "do not end before a rapid";
-    case RunGap::no_height:
-      return "have no rapid above them beside them";
-    case RunGap::others:
-      return "hold moves that are not compensated";
-    case RunGap::modal:
-      return "leave a modal state behind in which they would be other moves";
-    case RunGap::none:
-      break;
-  }
-  return "can be repeated";
+  constexpr std::array<const char*, 10> kTexts{
+      // in the order of the enum
+      "can be repeated",
+      "are made by a loop, an expression, a subprogram or a drilling cycle, or may be skipped",
+      "run under cutter radius compensation (G41, G42)",
+      "are incremental (G91)",
+      "have M, S, T or H words among them",
+      "do not begin behind a rapid",
+      "do not end before a rapid",
+      "have no rapid above them beside them",
+      "hold moves that are not compensated",
+      "leave a modal state behind in which they would be other moves"};
+  static_assert(kTexts.size() == static_cast<std::size_t>(RunGap::modal) + 1);
+  return kTexts[static_cast<std::size_t>(why)];
 }
 
 std::vector<CutRun> cut_runs(const Program& program, const Interpretation& moves, const std::vector<bool>& wanted) {

@@ -1,4 +1,6 @@
 // What is said of edits that are not in the text.
+#include <array>
+
 #include <fmt/format.h>
 
 #include "nc/emit.h"
@@ -6,29 +8,20 @@
 namespace camber::nc {
 
 std::string to_string(EmitGap why) {
-  switch (why) {
-    case EmitGap::canned_cycle:
-      return "a drilling cycle";
-    case EmitGap::machine_place:
-      return "a move of G28, G30 or G53";
-    case EmitGap::dwell:
-      return "a dwell";
-    case EmitGap::not_in_text:
-      return "a move of a loop, an expression, a subprogram, a corner word or a line of several blocks";
-    case EmitGap::several_moves:
-      return "a block of several moves";
-    case EmitGap::subprogram:
-      return "a block that also calls or ends a subprogram";
-    case EmitGap::rapid:
-      return "a rapid, which has no feed";
-    case EmitGap::feed_by_variable:
-      return "a move whose feed is set by an expression, or a program that reads its own feed";
-    case EmitGap::arc_not_split:
-      return "an arc of several turns, in inverse time (G93), or whose pieces do not close";
-    case EmitGap::arc:
-      break;
-  }
-  return "an arc that does not reach the new ends";
+  constexpr std::array<const char*, 10> kTexts{
+      // in the order of the enum
+      "a drilling cycle",
+      "a move of G28, G30 or G53",
+      "a dwell",
+      "a move of a loop, an expression, a subprogram, a corner word or a line of several blocks",
+      "a block of several moves",
+      "a block that also calls or ends a subprogram",
+      "an arc that does not reach the new ends",
+      "a rapid, which has no feed",
+      "a move whose feed is set by an expression, or a program that reads its own feed",
+      "an arc of several turns, in inverse time (G93), or whose pieces do not close"};
+  static_assert(kTexts.size() == static_cast<std::size_t>(EmitGap::arc_not_split) + 1);
+  return kTexts[static_cast<std::size_t>(why)];
 }
 
 void warn_of_uneditable(const Program& program, const Interpretation& interpretation, const std::vector<bool>& wanted,

@@ -1,4 +1,4 @@
-#include "nc/heidenhain/klartext_reader.h"
+#include "nc/heidenhain/klartext_tree.h"
 
 #include <algorithm>
 #include <array>

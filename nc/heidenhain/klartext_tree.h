@@ -6,8 +6,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/diagnostics.h"
 #include "nc/program_text.h"
 
 namespace camber::nc::heidenhain {
@@ -102,5 +104,17 @@ inline bool is_incremental(const Program& program, const Word& word) {
   const char c = program.source.text()[word.offset];
   return c == 'I' || c == 'i';
 }
+
+/// Finds the statements of the text and reads the words of those that have some. What is wrong with words is said at
+/// them; unknown statements are Kind::refused.
+Program read_text(SourceText source, Diagnostics& diagnostics);
+
+/// Returns what to say of a statement that is refused, and the name of the check.
+struct Refusal {
+  std::string message;
+  std::string check;
+  std::string alike{};  ///< what counts as the same
+};
+Refusal refusal_of(std::string_view statement);
 
 }  // namespace camber::nc::heidenhain

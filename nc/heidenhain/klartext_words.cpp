@@ -1,16 +1,16 @@
-// The words of a block: values, feeds, M functions, tools.
+#include "nc/heidenhain/klartext_words.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "nc/heidenhain/klartext.h"
 #include "nc/mode_words.h"
+#include "nc/shared_states.h"
 
 namespace camber::nc::heidenhain {
-
 namespace {
 
 /// Returns the word by which programs say `letter`, such as FMAX for kRapid.
@@ -73,23 +73,45 @@ bool belongs_to(char letter, Kind kind) {
 
 }  // namespace
 
-/// The number of the word, or its parameter's.
-double Klartext::value_of(const Word& word) {
-  if (!std::isnan(word.value)) return word.value;
-  Cursor at(file().source.text(), word.offset + word.value_at, std::size_t{word.offset} + word.length);
-  return read_value(at, parameters_);
+void StatementContext::error(std::size_t offset, std::string_view check, std::string message, std::string_view alike) {
+  report.set_source(file().source);
+  report.error(offset, check, std::move(message), alike);
 }
 
-BlockValues Klartext::read_values(const Statement& s) {
+void StatementContext::warn(std::size_t offset, std::string_view check, std::string message, std::string_view alike) {
+  report.set_source(file().source);
+  report.warning(offset, check, std::move(message), alike);
+}
+
+double StatementContext::known(double value, std::size_t offset) const {
+  if (std::isnan(value))
+    throw FormulaError(
+        offset, "unknown-parameter",
+        fmt::format("this depends on a parameter whose value is not known: {}", parameters.why_unknown()));
+  return value;
+}
+
+void StatementContext::add_event(EventKind kind, double value) {
+  out.events.push_back({value, block, static_cast<std::uint32_t>(out.moves.size()), kind, false});
+}
+
+/// The number of the word, or its parameter's.
+double Modes::value_of(const Word& word) {
+  if (!std::isnan(word.value)) return word.value;
+  Cursor at(at_.file().source.text(), word.offset + word.value_at, std::size_t{word.offset} + word.length);
+  return read_value(at, at_.parameters);
+}
+
+BlockValues Modes::read_values(const Statement& s) {
   BlockValues b;
-  const Program& program = file();
-  for (const Word& word : tree().words_of(program, s)) {
+  const Program& program = at_.file();
+  for (const Word& word : at_.tree().words_of(program, s)) {
     const bool by_parameter = std::isnan(word.value);
-    const auto number = [&] { return by_parameter ? known(value_of(word), word.offset) : word.value; };
+    const auto number = [&] { return by_parameter ? at_.known(value_of(word), word.offset) : word.value; };
     const auto once = [&](bool stands_already) {
       if (stands_already)
-        error(word.offset, "repeated-word",
-              fmt::format("{} stands twice in the block; once was expected", name_of(word.letter)), "repeated");
+        at_.error(word.offset, "repeated-word",
+                  fmt::format("{} stands twice in the block; once was expected", name_of(word.letter)), "repeated");
     };
     const auto place = [&](std::optional<double>& out) {
       once(out.has_value());
@@ -97,9 +119,10 @@ BlockValues Klartext::read_values(const Statement& s) {
       b.by_parameter |= by_parameter;
     };
     if (!belongs_to(word.letter, s.kind)) {
-      error(word.offset, "not-a-word",
-            fmt::format("{} has no meaning in a block that begins with {}", name_of(word.letter), keyword_of(s.kind)),
-            fmt::format("{} {}", word.letter, static_cast<int>(s.kind)));
+      at_.error(
+          word.offset, "not-a-word",
+          fmt::format("{} has no meaning in a block that begins with {}", name_of(word.letter), keyword_of(s.kind)),
+          fmt::format("{} {}", word.letter, static_cast<int>(s.kind)));
       continue;
     }
     switch (word.letter) {
@@ -126,7 +149,7 @@ BlockValues Klartext::read_values(const Statement& s) {
             b.to_plane = static_cast<std::uint8_t>(b.to_plane | 1U << axis);
             value = 0;
           }
-          value = known(value, word.offset);
+          value = at_.known(value, word.offset);
         }
         once(b.rotary[axis].has_value());
         b.rotary[axis] = value;
@@ -137,26 +160,26 @@ BlockValues Klartext::read_values(const Statement& s) {
       case 'U':
       case 'V':
       case 'W':
-        error(word.offset, "not-supported",
-              fmt::format("the axis {} is not supported; X, Y, Z, A, B and C were expected", word.letter), "axis");
+        at_.error(word.offset, "not-supported",
+                  fmt::format("the axis {} is not supported; X, Y, Z, A, B and C were expected", word.letter), "axis");
         break;
       case 'F':
-        once(b.feed.has_value());
-        b.feed = number();
-        b.feed_by_variable = by_parameter;
+        once(b.feed.value.has_value());
+        b.feed.value = number();
+        b.feed.by_variable = by_parameter;
         break;
       case letter::kRapid:
-        b.rapid = true;
+        b.feed.rapid = true;
         break;
       case letter::kAutoFeed:
-        b.auto_feed = true;
+        b.feed.of_tool = true;
         break;
       case letter::kFeedPerTurn:
-        once(b.feed_per_turn.has_value());
-        b.feed_per_turn = number();
+        once(b.feed.per_turn.has_value());
+        b.feed.per_turn = number();
         break;
       case letter::kFeedPerTooth:
-        b.feed_per_tooth = number();
+        b.feed.per_tooth = number();
         break;
       case 'R':
         place(b.radius);
@@ -169,14 +192,14 @@ BlockValues Klartext::read_values(const Statement& s) {
         b.sense = static_cast<int>(word.value);
         break;
       case letter::kPolarRadius:
-        once(b.polar_radius.has_value());
-        b.polar_radius = number();
-        b.polar_radius_step = is_incremental(program, word);
+        once(b.polar.radius.has_value());
+        b.polar.radius = number();
+        b.polar.radius_step = is_incremental(program, word);
         break;
       case letter::kPolarAngle:
-        once(b.polar_angle.has_value());
-        b.polar_angle = number();
-        b.polar_angle_step = is_incremental(program, word);
+        once(b.polar.angle.has_value());
+        b.polar.angle = number();
+        b.polar.angle_step = is_incremental(program, word);
         break;
       case letter::kLength:
         b.length = number();
@@ -187,7 +210,7 @@ BlockValues Klartext::read_values(const Statement& s) {
       case 'M': {
         const double code = number();
         if (code < 0 || code > 9999 || code != std::floor(code))
-          error(word.offset, "unknown-m", fmt::format("M{} is no M function; a whole number was expected", code));
+          at_.error(word.offset, "unknown-m", fmt::format("M{} is no M function; a whole number was expected", code));
         else
           b.functions.push_back({static_cast<int>(code), std::nullopt, word.offset});
         break;
@@ -199,8 +222,8 @@ BlockValues Klartext::read_values(const Statement& s) {
         if (s.kind == Kind::functions) {
           set_spindle_speed(number(), word.offset);
         } else {
-          warn(word.offset, "no-effect", "S in a path block is read without effect; the speed is set by TOOL CALL",
-               "S");
+          at_.warn(word.offset, "no-effect", "S in a path block is read without effect; the speed is set by TOOL CALL",
+                   "S");
         }
         break;
       default:
@@ -214,329 +237,263 @@ BlockValues Klartext::read_values(const Statement& s) {
   return b;
 }
 
-// --- feeds
-
 /// M136, M137: the F of their own block counts in the new unit.
-void Klartext::set_feed_mode(const BlockValues& b) {
+void Modes::set_feed_mode(const BlockValues& b) {
   for (const auto& f : b.functions) {
     if (f.code != 136 && f.code != 137) continue;
     const FeedMode mode = f.code == 136 ? FeedMode::per_revolution : FeedMode::per_minute;
     if (mode == state_.feed_mode) continue;
-    state_.feed_mode = mode;
-    state_changed_ = true;
+    change().feed_mode = mode;
     feed_.reset();
   }
 }
 
-void Klartext::set_feed(const BlockValues& b) {
-  if (b.feed) {
-    if (*b.feed < 0) {
-      error(statement_->begin, "feed-negative",
-            fmt::format("F{} is negative; a feed greater than zero was expected", *b.feed));
+void Modes::set_feed(const BlockValues& b) {
+  if (b.feed.value) {
+    if (*b.feed.value < 0) {
+      at_.error(at_.statement->begin, "feed-negative",
+                fmt::format("F{} is negative; a feed greater than zero was expected", *b.feed.value));
       return;
     }
-    feed_ = state_.feed_mode == FeedMode::per_revolution ? *b.feed * unit_mm()
-                                                         : mm_per_s_from_mm_per_min(*b.feed * unit_mm());
+    feed_ = state_.feed_mode == FeedMode::per_revolution ? *b.feed.value * at_.unit_mm()
+                                                         : mm_per_s_from_mm_per_min(*b.feed.value * at_.unit_mm());
     feed_given_ = true;
-    feed_by_variable_ = b.feed_by_variable;
-  } else if (b.auto_feed) {
+    feed_by_variable_ = b.feed.by_variable;
+  } else if (b.feed.of_tool) {
     if (!tool_feed_)
-      error(statement_->begin, "feed-missing", "FAUTO without a feed in TOOL CALL; F was expected there");
+      at_.error(at_.statement->begin, "feed-missing", "FAUTO without a feed in TOOL CALL; F was expected there");
     feed_ = tool_feed_;
     feed_given_ = true;
     feed_by_variable_ = true;
-  } else if (b.feed_per_turn) {
-    feed_ = *b.feed_per_turn * unit_mm() * turns_per_s("FU");
+  } else if (b.feed.per_turn) {
+    feed_ = *b.feed.per_turn * at_.unit_mm() * turns_per_s("FU");
     feed_given_ = feed_by_variable_ = true;
-  } else if (b.feed_per_tooth) {
-    feed_ = *b.feed_per_tooth * unit_mm() * teeth() * turns_per_s("FZ");
+  } else if (b.feed.per_tooth) {
+    feed_ = *b.feed.per_tooth * at_.unit_mm() * teeth() * turns_per_s("FZ");
     feed_given_ = feed_by_variable_ = true;
   }
 }
 
-double Klartext::turns_per_s(const char* word) {
+double Modes::turns_per_s(const char* word) {
   if (state_.spindle_speed_rpm <= 0)
-    error(statement_->begin, "feed-per-turn", fmt::format("{} without a spindle speed; S was expected before", word),
-          word);
+    at_.error(at_.statement->begin, "feed-per-turn",
+              fmt::format("{} without a spindle speed; S was expected before", word), word);
   return state_.spindle_speed_rpm / 60;
 }
 
-double Klartext::teeth() {
+double Modes::teeth() {
   constexpr int kAssumed = 2;
-  warn(statement_->begin, "teeth-unknown",
-       fmt::format("FZ needs the number of teeth of tool {}, which stands in the tool table of the control; {} are "
-                   "assumed",
-                   state_.tool, kAssumed),
-       fmt::format("teeth of {}", state_.tool));
+  at_.warn(at_.statement->begin, "teeth-unknown",
+           fmt::format("FZ needs the number of teeth of tool {}, which stands in the tool table of the control; {} are "
+                       "assumed",
+                       state_.tool, kAssumed),
+           fmt::format("teeth of {}", state_.tool));
   return kAssumed;
 }
 
-double Klartext::cutting_feed(const std::string& what) {
+double Modes::cutting_feed(const std::string& what) {
   if (!feed_) {
-    error(statement_->begin, "feed-missing",
-          fmt::format("{} without a feed; F greater than zero was expected before or in this block", what), "feed");
+    at_.error(at_.statement->begin, "feed-missing",
+              fmt::format("{} without a feed; F greater than zero was expected before or in this block", what), "feed");
     return 0;
   }
   if (*feed_ == 0) {
-    error(statement_->begin, "feed-zero", fmt::format("F0 on {}; the feed must be greater than zero", what), "feed");
+    at_.error(at_.statement->begin, "feed-zero", fmt::format("F0 on {}; the feed must be greater than zero", what),
+              "feed");
     return 0;
   }
   if (state_.feed_mode != FeedMode::per_revolution) return *feed_;
   if (state_.spindle_speed_rpm > 0) return *feed_ * state_.spindle_speed_rpm / 60;
-  error(statement_->begin, "feed-per-turn",
-        "a feed per revolution (M136) without a spindle speed; S was expected before", "feed-per-turn");
+  at_.error(at_.statement->begin, "feed-per-turn",
+            "a feed per revolution (M136) without a spindle speed; S was expected before", "feed-per-turn");
   return 0;
 }
 
 /// M103: the part of the feed into the material is at most the factor times the feed.
-double Klartext::plunging_feed(double feed, const Vec3& way_mm) const {
-  if (!plunge_factor_ || way_mm[tool_axis_] >= 0) return feed;
-  const double down = -way_mm[tool_axis_] / way_mm.norm();
+double Modes::plunging_feed(double feed, const Vec3& way_mm, int tool_axis) const {
+  if (!plunge_factor_ || way_mm[tool_axis] >= 0) return feed;
+  const double down = -way_mm[tool_axis] / way_mm.norm();
   return std::min(feed, feed * *plunge_factor_ / down);
 }
 
-// --- M functions
-
-namespace {
-
-constexpr std::array kAtEnd{0, 1, 2, 5, 6, 9, 30};
-/// Read, without effect on the moves; M functions of the control itself. Others are the machine maker's own.
-constexpr std::array kPassed{10,  11,  90,  93,  94,  96,  97,  98,  101, 102, 104, 107, 108,
-                             109, 110, 111, 112, 114, 115, 116, 117, 118, 120, 121, 124, 132,
-                             133, 134, 135, 138, 141, 142, 143, 144, 145, 148, 149};
-
-bool acts_at_end(int code) { return std::ranges::find(kAtEnd, code) != kAtEnd.end(); }
-
-}  // namespace
-
-void Klartext::functions_before(const BlockValues& b) {
-  for (const auto& f : b.functions)
-    if (!acts_at_end(f.code)) run_m(f);
-}
-
-void Klartext::functions_after(const BlockValues& b) {
-  for (const auto& f : b.functions)
-    if (acts_at_end(f.code)) run_m(f);
-}
-
-void Klartext::run_m(const BlockValues::Function& f) {
-  const auto spindle = [&](SpindleDirection direction, EventKind kind) {
-    state_.spindle = direction;
-    state_changed_ = true;
-    add_event(kind, f.code);
-  };
-  const auto coolant = [&](bool on) {
-    state_.coolant = on;
-    state_changed_ = true;
-    add_event(EventKind::m_code, f.code);
-  };
-  switch (f.code) {
-    case 3:
-    case 4:
-    case 13:
-    case 14:
-      f.code % 10 == 3 ? spindle(SpindleDirection::clockwise, EventKind::spindle_clockwise)
-                       : spindle(SpindleDirection::counter_clockwise, EventKind::spindle_counter_clockwise);
-      if (f.code > 10) coolant(true);
-      break;
-    case 5:
-      spindle(SpindleDirection::stopped, EventKind::spindle_stop);
-      break;
-    case 7:
-    case 8:
-    case 9:
-      coolant(f.code != 9);
-      break;
-    case 19:
-      add_event(EventKind::spindle_orient, f.code);
-      break;
-    case 2:
-    case 30:
-      add_event(EventKind::m_code, f.code);
-      ended_ = levels_.size() <= 1 || level().file == &main_;
-      if (!ended_) end_program();
-      break;
-    case 91:
-    case 92:
-    case 99:
-    case 130:
-    case 136:
-    case 137:
-    case 140:
-      break;  // run_path reads them
-    case 89:
-      cycle_modal_ = true;
-      break;
-    case 120:
-      state_.mode_words = f.argument && *f.argument == 0 ? state_.mode_words & ~mode_word_bit("m120")
-                                                         : with_mode_word(state_.mode_words, "m120");
-      state_changed_ = true;
-      add_event(EventKind::m_code, f.code);
-      break;
-    case 103:
-      plunge_factor_ = f.argument;
-      break;
-    case 126:
-    case 127:
-      shortest_way_ = f.code == 126;
-      add_event(EventKind::m_code, f.code);
-      break;
-    case 128:
-    case 129:
-      set_tip_control(f.code == 128);
-      break;
-    case 97:
-    case 98:
-      if (radius_.active && radius_.radius_mm != 0)
-        warn(f.offset, "no-effect",
-             fmt::format("M{} is read without effect on the path that RL or RR makes here", f.code), "M97");
-      add_event(EventKind::m_code, f.code);
-      break;
-    default:
-      add_event(EventKind::m_code, f.code);
-      if (f.code <= 1 || f.code == 6 || std::ranges::find(kPassed, f.code) != kPassed.end()) break;
-      warn(f.offset, "machine-function",
-           fmt::format("M{} is a function of the machine's maker; what it moves is not known, and it is passed over",
-                       f.code),
-           fmt::format("M{}", f.code));
-      break;
-  }
-}
-
-void Klartext::add_event(EventKind kind, double value) {
-  out_.events.push_back({value, block_, static_cast<std::uint32_t>(out_.moves.size()), kind, false});
-}
-
-// --- tools
-
-std::optional<double> Klartext::tool_radius_mm() const {
-  const auto found = tools_.find(state_.tool);
-  if (found == tools_.end() || !found->second.radius_mm) return std::nullopt;
-  return *found->second.radius_mm + tool_delta_radius_mm_;
-}
-
-std::optional<double> Klartext::cutter_radius_mm() const {
-  const auto known = tool_radius_mm();
-  return known ? known : nc::cutter_radius_mm(options_.tool_offsets, state_.tool);
-}
-
-/// The length of the tool counts from TOOL CALL on.
-void Klartext::update_tool_length() {
-  if (options_.rotary_axes.empty()) return;
-  std::optional<double> length = 0.0;
-  if (state_.tool != 0) {
-    const auto tool = tools_.find(state_.tool);
-    length = tool == tools_.end() ? std::nullopt : tool->second.length_mm;
-  }
-  if (length == state_.tool_length_mm) return;
-  state_.tool_length_mm = length;
-  state_changed_ = true;
-}
-
-void Klartext::set_spindle_speed(double rpm, std::size_t offset) {
+void Modes::set_spindle_speed(double rpm, std::size_t offset) {
   if (rpm < 0) {
-    error(offset, "spindle-speed", fmt::format("S{} is negative; zero or more was expected", rpm));
+    at_.error(offset, "spindle-speed", fmt::format("S{} is negative; zero or more was expected", rpm));
     return;
   }
   state_.programmed_spindle_speed_rpm = rpm;
-  state_.spindle_speed_rpm = std::min(rpm, options_.max_spindle_speed_rpm);
+  state_.spindle_speed_rpm = std::min(rpm, at_.options.max_spindle_speed_rpm);
   state_changed_ = true;
-  add_event(EventKind::spindle_speed, rpm);
+  at_.add_event(EventKind::spindle_speed, rpm);
 }
 
-/// TOOL CALL 5 Z S1000 F500 DL+0 DR+0: number, name or parameter; the axis or S may stand alone.
-void Klartext::call_tool(const Statement& s) {
-  Cursor at = cursor(s);
-  std::optional<int> number;
+void Modes::set_spindle(SpindleDirection direction, EventKind kind, int code) {
+  change().spindle = direction;
+  at_.add_event(kind, code);
+}
+
+void Modes::set_coolant(bool on, int code) {
+  change().coolant = on;
+  at_.add_event(EventKind::m_code, code);
+}
+
+void Modes::give_feed_to(Move& move) {
+  move.feed_given = std::exchange(feed_given_, false);
+  move.feed_by_variable = feed_by_variable_;
+}
+
+std::uint32_t Modes::state_index() {
+  if (!state_changed_) return state_index_;
+  state_changed_ = false;
+  return state_index_ = shared_state(at_.out.states, state_);
+}
+
+/// CYCL DEF 32.1 T0.05, 32.2 HSC-MODE:1 TA0.5; 32.1 without a value: off.
+void Modes::set_tolerance(int part, Cursor at) {
+  if (part == 0) {  // CYCL DEF 32.0 alone resets it; 32.1 sets it
+    state_.contouring = Contouring::none;
+    state_.mode_words &= ~mode_words_of_group(1);
+    state_.blend_tolerance_mm = -1;
+    state_changed_ = true;
+    return;
+  }
+  if (part == 1) {
+    if (!at.accept_prefix("T") && !begins_number(at)) return;
+    const std::size_t begin = at.offset();
+    if (!begins_number(at))
+      throw FormulaError(begin, "tolerance", "CYCL DEF 32.1 without a number; T0.02 or nothing was expected");
+    const double tolerance = at_.known_value(at, begin) * at_.unit_mm();
+    if (tolerance < 0)
+      throw FormulaError(begin, "tolerance", fmt::format("a tolerance of {}; zero or more was expected", tolerance));
+    if (tolerance == 0) return;
+    state_.contouring = Contouring::cycle32;
+    state_.blend_tolerance_mm = tolerance;
+    state_changed_ = true;
+  }
+  if (part != 2 || !at.more()) return;
+  const std::size_t begin = at.offset();
+  if (at.accept("HSC") && at.accept('-') && at.accept("MODE") && at.accept(':') && at.more()) {
+    state_.mode_words = with_mode_word(state_.mode_words, at.peek() == '0' ? "cycle32_finish" : "cycle32_rough");
+    state_changed_ = true;
+    return;
+  }
+  at.go_to(begin);
+  if (!at.accept_prefix("TA"))
+    throw FormulaError(begin, "tolerance",
+                       fmt::format("{} in CYCL DEF 32.2; HSC-MODE:0, HSC-MODE:1 or TA was expected", at.word()));
+}
+
+Tools::Tools(StatementContext& at, Modes& modes) : at_(at), modes_(modes) {
+  for (const auto& [number, offset] : at.options.tool_offsets)
+    if (number >= 0) tools_[number] = {offset.length_mm, offset.effective_radius_mm()};
+  at.parameters.system = [this](int number) { return system_value(number); };
+}
+
+const Tools::Tool& Tools::tool(int number) const {
+  static const Tool kNone;
+  const auto found = tools_.find(number);
+  return found == tools_.end() ? kNone : found->second;
+}
+
+std::optional<int> Tools::read_number(Cursor& at) {
   const std::size_t begin = (at.more(), at.offset());
-  if (auto name = at.quoted()) {
-    number = tool_numbers_.of(*name);
-  } else if (at.peek() == 'Q') {
+  if (auto name = at.quoted()) return numbers_.of(*name);
+  if (at.peek() == 'Q') {
     const auto parameter = read_parameter(at);
-    if (parameter && parameter->kind == 'S')
-      number = tool_numbers_.of(parameters_.text(parameter->number));
-    else if (parameter)
-      number = static_cast<int>(std::lround(known(parameters_.value(*parameter, begin), begin)));
-  } else if (is_digit(at.peek())) {
-    const double value = at.number().value_or(0);
-    if (value > 32767)
-      throw FormulaError(begin, "tool", fmt::format("TOOL CALL {}; a number up to 32767 was expected", value));
-    number = static_cast<int>(value);  // 5.1 is tool 5 with its second length
-    tool_numbers_.reserve(*number);
+    if (!parameter) return std::nullopt;
+    if (parameter->kind == 'S') return numbers_.of(at_.parameters.text(parameter->number));
+    return static_cast<int>(std::lround(at_.known(at_.parameters.value(*parameter, begin), begin)));
   }
-  if (number) {
-    end_compensation();
-    if (state_.tool != *number || !tool_called_) state_changed_ = true;
-    state_.tool = *number;
-    tool_called_ = true;
-    tool_delta_radius_mm_ = 0;
-    update_tool_length();
-    add_event(EventKind::tool_change, *number);
+  if (!is_digit(at.peek())) return std::nullopt;
+  const double value = at.number().value_or(0);
+  if (value > 32767)
+    throw FormulaError(begin, "tool", fmt::format("TOOL CALL {}; a number up to 32767 was expected", value));
+  const int number = static_cast<int>(value);  // 5.1 is tool 5 with its second length
+  numbers_.reserve(number);
+  return number;
+}
+
+void Tools::call(int number) {
+  modes_.change().tool = number;
+  called_ = true;
+  delta_radius_mm_ = 0;
+  update_length();
+  at_.add_event(EventKind::tool_change, number);
+}
+
+void Tools::set_axis(int axis) {
+  axis_ = axis;
+  modes_.change().plane_g = static_cast<std::uint8_t>(19 - axis);
+}
+
+std::optional<double> Tools::system_value(int number) const {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  switch (number) {
+    case 108:
+      if (const auto radius = cutter_radius_mm()) return *radius / at_.unit_mm();
+      return kUnknown;
+    case 109:
+      return called_ ? axis_ : -1;
+    case 110:
+      return modes_.state().spindle == SpindleDirection::clockwise           ? 0
+             : modes_.state().spindle == SpindleDirection::counter_clockwise ? 1
+                                                                             : -1;
+    case 111:
+      return modes_.state().coolant ? 1 : 0;
+    case 113:
+      return at_.inch ? 1 : 0;
+    case 114:
+      if (const auto& length = tool(modes_.state().tool).length_mm) return *length / at_.unit_mm();
+      return kUnknown;
+    case 120:
+    case 121:
+    case 122:
+      return kUnknown;
+    default:
+      return std::nullopt;
   }
-  BlockValues b;
-  while (at.more()) {
-    const std::size_t offset = at.offset();
-    const char c = at.peek();
-    if (at.accept_prefix("DR2")) {
-      read_value(at, parameters_);
-    } else if (at.accept_prefix("DR")) {
-      tool_delta_radius_mm_ = known(read_value(at, parameters_), offset) * unit_mm();
-    } else if (at.accept_prefix("DL")) {
-      read_value(at, parameters_);
-    } else if (c == 'S') {
-      at.advance();
-      const bool bracket = at.accept('('), cutting_speed = at.accept("VC");
-      if (cutting_speed) at.accept(':') || at.accept('=');
-      double speed = known(read_value(at, parameters_), offset);
-      if (bracket) at.accept(')');
-      const auto radius = cutter_radius_mm();
-      if (cutting_speed && (!radius || *radius <= 0)) {
-        warn(offset, "no-effect",
-             "a cutting speed in TOOL CALL needs the radius of the tool, which nothing gives; S with the speed was "
-             "expected");
-        continue;
-      }
-      if (cutting_speed) speed *= (inch_ ? 12 * 25.4 : 1000) / (2 * kPi * *radius);  // m, or feet, a minute
-      set_spindle_speed(speed, offset);
-    } else if (c == 'F') {
-      at.advance();
-      if (at.accept("AUTO") || at.accept("MAX")) continue;
-      const char per = at.peek();
-      if (per == 'Z' || per == 'U') at.advance();
-      const double feed = known(read_value(at, parameters_), offset);
-      if (per == 'Z')
-        b.feed_per_tooth = feed;
-      else if (per == 'U')
-        b.feed_per_turn = feed;
-      else
-        b.feed = feed;
-    } else if (c >= 'X' && c <= 'Z') {
-      at.advance();
-      tool_axis_ = c - 'X';
-      state_.plane_g = static_cast<std::uint8_t>(c == 'Z' ? 17 : c == 'Y' ? 18 : 19);
-      state_changed_ = true;
-    } else if (c == 'M') {
-      at.advance();
-      if (const auto code = at.integer()) run_m({*code, std::nullopt, offset});
-    } else {
-      throw FormulaError(offset, "not-a-word",
-                         fmt::format("{} in TOOL CALL; the axis, S, F, DL, DR or DR2 was expected", at.word()));
-    }
-  }
-  if (!b.feed && !b.feed_per_tooth && !b.feed_per_turn) return;
-  set_feed(b);
-  tool_feed_ = feed_;
+}
+
+/// = ID50 NR2 IDX5: number, length and radius of a tool, where they are given.
+std::optional<double> Tools::asked_of_control(Cursor at) const {
+  const auto number = [&](std::string_view word) {
+    return at.accept_prefix(word) ? read_value(at, at_.parameters) : -1;
+  };
+  at.accept('=');
+  const double group = number("ID"), which = number("NR"), index = number("IDX");
+  const int asked = index < 0 ? modes_.state().tool : static_cast<int>(index);
+  if (group == 20 && which == 1) return modes_.state().tool;
+  if (group != 50 || (which != 1 && which != 2)) return std::nullopt;
+  std::optional<double> value = which == 1 ? tool(asked).length_mm : tool(asked).radius_mm;
+  if (!value && which == 2) value = nc::cutter_radius_mm(at_.options.tool_offsets, asked);
+  return value ? std::optional(*value / at_.unit_mm()) : std::nullopt;
+}
+
+std::optional<double> Tools::radius_mm() const {
+  const auto& radius = tool(modes_.state().tool).radius_mm;
+  return radius ? std::optional(*radius + delta_radius_mm_) : std::nullopt;
+}
+
+std::optional<double> Tools::cutter_radius_mm() const {
+  const auto known = radius_mm();
+  return known ? known : nc::cutter_radius_mm(at_.options.tool_offsets, modes_.state().tool);
+}
+
+/// The length of the tool counts from TOOL CALL on.
+void Tools::update_length() {
+  if (!at_.has_rotary_axes()) return;
+  modes_.change().tool_length_mm = modes_.state().tool == 0 ? 0.0 : tool(modes_.state().tool).length_mm;
 }
 
 /// TOOL DEF 5 L+0 R+3: a tool of the program; without L and R the next one is made ready.
-void Klartext::define_tool(const Statement& s) {
-  Cursor at = cursor(s);
+void Tools::define(const Statement& s) {
+  Cursor at = at_.cursor(s);
   const std::size_t begin = (at.more(), at.offset());
   std::optional<int> number;
   if (auto name = at.quoted())
-    number = tool_numbers_.of(*name);
+    number = numbers_.of(*name);
   else if (at.peek() == 'Q')
-    number = static_cast<int>(std::lround(known(read_value(at, parameters_), begin)));
+    number = static_cast<int>(std::lround(at_.known_value(at, begin)));
   else if (is_digit(at.peek()))
     number = static_cast<int>(at.number().value_or(0));
   if (!number) throw FormulaError(begin, "tool", "TOOL DEF without a tool; a number or a name was expected");
@@ -545,17 +502,34 @@ void Klartext::define_tool(const Statement& s) {
     const std::size_t offset = at.offset();
     // L+0 and R+0 of a post that leaves them to the tool table say nothing.
     if (at.accept('L')) {
-      const double length = known(read_value(at, parameters_), offset) * unit_mm();
+      const double length = at_.known_value(at, offset) * at_.unit_mm();
       if (length != 0 || !tools_[*number].length_mm) tools_[*number].length_mm = length;
     } else if (at.accept('R')) {
-      const double radius = known(read_value(at, parameters_), offset) * unit_mm();
+      const double radius = at_.known_value(at, offset) * at_.unit_mm();
       if (radius != 0 || !tools_[*number].radius_mm) tools_[*number].radius_mm = radius;
     } else {
       throw FormulaError(offset, "not-a-word", fmt::format("{} in TOOL DEF; L or R was expected", at.word()));
     }
     defined = true;
   }
-  if (!defined && *number != 0) add_event(EventKind::tool_select, *number);
+  if (!defined && *number != 0) at_.add_event(EventKind::tool_select, *number);
+}
+
+Plane plane_of_axis(int axis) { return axis == 2 ? Plane::xy : axis == 1 ? Plane::zx : Plane::yz; }
+
+Vec2 direction_at_deg(double degrees) {
+  const double turn = std::fmod(std::fmod(degrees, 360.0) + 360.0, 360.0);
+  if (turn == 0) return {1, 0};
+  if (turn == 90) return {0, 1};
+  if (turn == 180) return {-1, 0};
+  if (turn == 270) return {0, -1};
+  return {std::cos(rad_from_deg(turn)), std::sin(rad_from_deg(turn))};
+}
+
+bool begins_number(Cursor& at) {
+  const char c = at.peek();
+  return is_digit(c) || c == '+' || c == '-' || c == '.' ||
+         (c == 'Q' && (is_digit(at.behind(1)) || at.behind(1) == 'L'));
 }
 
 }  // namespace camber::nc::heidenhain

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "base/numbers.h"
 #include "nc/durations.h"
 #include "nc/reporter.h"
 #include "nc/siemens/line_parser.h"
 #include "nc/siemens/siemens_sequencer.h"
+#include "nc/write/g_code_writer.h"
 
 namespace camber::nc::siemens {
 namespace {
@@ -36,6 +39,32 @@ bool is_own_g(std::string_view digits) {
   constexpr int kOwn[] = {450, 451, 500, 505, 506, 507, 508, 509, 601, 602, 603, 641, 642, 643, 644, 645, 700, 710};
   return std::ranges::any_of(kOwn, [&](int own) { return own == *number; });
 }
+
+class SiemensWriter : public GCodeWriter {
+ public:
+  SiemensWriter(const Dialect& dialect, WriterFormat format) : GCodeWriter(dialect, std::move(format)) {}
+
+  void dwell(double seconds) override { put(fmt::format("G4 F{:g}", seconds)); }
+  void stop_exactly() override { put("G60"); }
+
+ private:
+  void write_head() override {
+    put(fmt::format("%_N_{}_MPF", program_name(format().title)));
+    put(";$PATH=/_N_MPF_DIR");
+    put("G17 G71 G90 G94 G40");
+  }
+
+  void write_tool(const WrittenTool& tool) override {
+    put(fmt::format("T{} ; {}", tool.number, tool.comment));
+    put("M6 D1");
+    put(fmt::format("G54 S{:.0f} M3", tool.spindle_rpm));
+    put("G0 " + coordinate('Z', tool.safe_z_mm));
+    if (format().coolant) put("M8");
+    set_motion("G0");
+  }
+
+  void write_end() override { put(std::string(dialect().program_end)); }
+};
 
 }  // namespace
 
@@ -119,6 +148,10 @@ Interpretation interpret(const Program& program, const InterpreterOptions& optio
   check_durations(program, out, report);
   report.finish();
   return out;
+}
+
+std::unique_ptr<ProgramWriter> writer(const Dialect& dialect, WriterFormat format) {
+  return std::make_unique<SiemensWriter>(dialect, std::move(format));
 }
 
 }  // namespace camber::nc::siemens

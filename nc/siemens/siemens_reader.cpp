@@ -1,6 +1,7 @@
 #include "nc/siemens/siemens_language.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -240,45 +241,18 @@ class Reader {
   }
 
   static std::string_view text_of(FlowKind kind) {
-    switch (kind) {
-      case FlowKind::if_block:
-        return "IF";
-      case FlowKind::else_branch:
-        return "ELSE";
-      case FlowKind::for_loop:
-        return "FOR";
-      case FlowKind::while_loop:
-        return "WHILE";
-      case FlowKind::repeat_loop:
-        return "REPEAT";
-      case FlowKind::endless_loop:
-        return "LOOP";
-      case FlowKind::end_if:
-        return "ENDIF";
-      case FlowKind::end_for:
-        return "ENDFOR";
-      case FlowKind::end_while:
-        return "ENDWHILE";
-      case FlowKind::until:
-        return "UNTIL";
-      default:
-        return "ENDLOOP";
-    }
+    constexpr std::array<std::string_view, 14> kNames{
+        // in the order of the enum
+        "", "IF", "ELSE", "ENDIF", "", "", "FOR", "ENDFOR", "WHILE", "ENDWHILE", "REPEAT", "UNTIL", "LOOP", "ENDLOOP"};
+    static_assert(kNames.size() == static_cast<std::size_t>(FlowKind::end_loop) + 1);
+    return kNames[std::min(static_cast<std::size_t>(kind), kNames.size() - 1)];
   }
 
+  /// The end of a loop stands behind its beginning in the enum.
   static FlowKind end_of(FlowKind kind) {
-    switch (kind) {
-      case FlowKind::for_loop:
-        return FlowKind::end_for;
-      case FlowKind::while_loop:
-        return FlowKind::end_while;
-      case FlowKind::repeat_loop:
-        return FlowKind::until;
-      case FlowKind::endless_loop:
-        return FlowKind::end_loop;
-      default:
-        return FlowKind::end_if;
-    }
+    const bool loop = kind == FlowKind::for_loop || kind == FlowKind::while_loop || kind == FlowKind::repeat_loop ||
+                      kind == FlowKind::endless_loop;
+    return loop ? static_cast<FlowKind>(static_cast<int>(kind) + 1) : FlowKind::end_if;
   }
 
   void link(Statement& s, std::vector<Statement*>& open) {
