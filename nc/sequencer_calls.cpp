@@ -1,13 +1,43 @@
 // Subprograms: M97 M98 M99, G65 G66 G67, and LinuxCNC's subs.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
-#include "nc/macro_call.h"
 #include "nc/sequencer.h"
 
 namespace camber::nc {
+namespace {
+
+/// Local variable of a letter, A to Z; 0: no argument.
+constexpr int kVariable[26] = {1, 2, 3, 7,  8,  9,  0,  11, 4,  5,  6,  0,  13,
+                               0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26};
+
+/// Letters to local variables: A to #1, B #2, C #3, I #4, J #5, K #6, D #7, E #8, F #9, H #11, M #13, Q #17 .. Z #26
+/// (table I). I, J and K that come again, or out of their order, begin the next set of three: #7 #8 #9, #10 .. (table
+/// II, up to ten sets). Where both give a variable a value the later word counts.
+/// Source: Fanuc B-64484EN, custom macro, argument specification I and II.
+/// Throws MacroError [macro-argument] for more than ten sets.
+LocalVariables macro_arguments(std::span<const Word> words) {
+  LocalVariables out;
+  int set = 0, last = -1;
+  for (const Word& w : words) {
+    int variable = kVariable[w.letter - 'A'];
+    if (variable == 0) continue;
+    if (w.letter >= 'I' && w.letter <= 'K') {
+      const int place = w.letter - 'I';
+      if (place <= last) ++set;
+      last = place;
+      variable += 3 * set;
+      if (set > 9) throw MacroError(w.offset, "macro-argument", "more than ten sets of I, J and K");
+    }
+    out.numbered[static_cast<std::size_t>(variable)] = w.value;
+  }
+  return out;
+}
+
+}  // namespace
 
 // --- subs of O-words ----------------------------------------------------------------------------------------------
 

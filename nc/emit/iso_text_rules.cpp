@@ -4,7 +4,7 @@
 #include <initializer_list>
 
 #include "nc/emit/block_writer.h"
-#include "nc/emit/letter_arcs.h"
+#include "nc/emit/text_rules.h"
 #include "nc/iso_language.h"
 
 namespace camber::nc {

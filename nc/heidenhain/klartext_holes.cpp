@@ -9,11 +9,8 @@
 #include "nc/heidenhain/klartext_flow.h"
 
 namespace camber::nc::heidenhain {
-namespace {
 
 constexpr double kAboveLastDepthMm = 0.2;  ///< rapids in a hole stop so far above the last depth (MP7410 and its like)
-
-}  // namespace
 
 void CycleMoves::run(std::size_t offset) {
   const int number = cycle_.number;

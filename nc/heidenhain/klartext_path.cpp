@@ -11,11 +11,8 @@
 #include "base/units.h"
 
 namespace camber::nc::heidenhain {
-namespace {
 
 constexpr double kFullTurn_rad = 2 * kPi;
-
-}  // namespace
 
 /// PR and PA about the pole; what is not given stays.
 Vec3 PathBlocks::polar_target(const BlockValues& b) {

@@ -428,30 +428,17 @@ void Tools::set_axis(int axis) {
 
 std::optional<double> Tools::system_value(int number) const {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  switch (number) {
-    case 108:
-      if (const auto radius = cutter_radius_mm()) return *radius / at_.unit_mm();
-      return kUnknown;
-    case 109:
-      return called_ ? axis_ : -1;
-    case 110:
-      return modes_.state().spindle == SpindleDirection::clockwise           ? 0
-             : modes_.state().spindle == SpindleDirection::counter_clockwise ? 1
-                                                                             : -1;
-    case 111:
-      return modes_.state().coolant ? 1 : 0;
-    case 113:
-      return at_.inch ? 1 : 0;
-    case 114:
-      if (const auto& length = tool(modes_.state().tool).length_mm) return *length / at_.unit_mm();
-      return kUnknown;
-    case 120:
-    case 121:
-    case 122:
-      return kUnknown;
-    default:
-      return std::nullopt;
-  }
+  const ModalState& state = modes_.state();
+  const auto in_units = [&](std::optional<double> mm) { return mm ? *mm / at_.unit_mm() : kUnknown; };
+  if (number == 108) return in_units(cutter_radius_mm());
+  if (number == 109) return called_ ? axis_ : -1;
+  if (number == 110 && state.spindle == SpindleDirection::stopped) return -1;
+  if (number == 110) return state.spindle == SpindleDirection::clockwise ? 0 : 1;
+  if (number == 111) return state.coolant ? 1 : 0;
+  if (number == 113) return at_.inch ? 1 : 0;
+  if (number == 114) return in_units(tool(state.tool).length_mm);
+  if (number >= 120 && number <= 122) return kUnknown;
+  return std::nullopt;
 }
 
 /// = ID50 NR2 IDX5: number, length and radius of a tool, where they are given.

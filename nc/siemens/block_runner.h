@@ -119,7 +119,6 @@ class BlockRunner : public SystemValues {
     std::uint32_t motion_offset = 0;
     const WordRow* frame = nullptr;
     std::uint32_t frame_offset = 0;
-    bool feed_mode_given = false;
     bool limits = false;                                // G25, G26: words are limits
     std::optional<double> block_feed{}, corner_feed{};  // FB; FRC, FRCM
   };
@@ -150,7 +149,7 @@ class BlockRunner : public SystemValues {
   void read_tool();
   void change_tool(std::uint32_t offset);
   void read_edge();
-  bool read_m_codes_before();
+  void read_m_codes_before();
   void start_spindle(const CodeWord& code);
   bool read_m_codes_after(bool& ends_subprogram);
   void set_contouring();
@@ -283,7 +282,6 @@ class BlockRunner : public SystemValues {
   std::optional<Affine> swivelled_;    ///< CYCLE800
   Frame frame_;
   Vec3 pole_mm_ = Vec3::Zero();
-  double polar_angle_deg_ = 0, polar_radius_mm_ = 0;
   std::map<int, ToolOffset> tool_offsets_;
   double offset_normal_mm_ = 0;
   double modal_rounding_mm_ = 0;

@@ -12,11 +12,8 @@
 #include "nc/siemens/block_runner.h"
 
 namespace camber::nc::siemens {
-namespace {
 
 constexpr std::uint8_t kCompressorGroup = 4, kRoundingGroup = 8;  // of kModeWords
-
-}  // namespace
 
 BlockRunner::BlockRunner(const Program& program, const InterpreterOptions& options, Reporter& report,
                          Interpretation& out)
@@ -155,7 +152,7 @@ bool BlockRunner::execute(bool& ends_subprogram) {
     read_spindle_speed();
   }
   read_tool();
-  if (!read_m_codes_before()) return false;
+  read_m_codes_before();
   if (changes_tool) read_edge();
   check_letters();
   note_dimensions();
@@ -340,7 +337,6 @@ void BlockRunner::set_feed_mode(FeedMode mode) {
     change_state();
   }
   feed_given_ = true;
-  request_.feed_mode_given = true;
 }
 
 // --- F, S, T, D
@@ -474,89 +470,53 @@ void BlockRunner::start_spindle(const CodeWord& code) {
   add_event(clockwise ? EventKind::spindle_clockwise : EventKind::spindle_counter_clockwise, state_.spindle_speed_rpm);
 }
 
-bool BlockRunner::read_m_codes_before() {
+void BlockRunner::read_m_codes_before() {
+  const auto add_coolant = [this](int m) {
+    state_.coolant = true;
+    change_state();
+    add_event(EventKind::m_code, m);
+  };
   for (const CodeWord& code : words_.m) {
-    switch (code.number) {
-      case 3:
-      case 4:
-      case 13:
-      case 14:
-        start_spindle(code);
-        break;
-      case 6:
-        change_tool(code.offset);
-        break;
-      case 7:
-      case 8:
-        state_.coolant = true;
-        change_state();
-        add_event(EventKind::m_code, code.number);
-        break;
-      case 19:
-        add_event(EventKind::spindle_orient, 0);
-        break;
-      case 0:
-      case 1:
-      case 2:
-      case 5:
-      case 9:
-      case 17:
-      case 30:
-        break;
-      case 60:
-        add_event(EventKind::pallet, 60);
-        break;
-      default: {
-        if (code.number < 0) {
-          error(code.offset, "unknown-m",
-                fmt::format("M{:g} is no M function; a whole number was expected", code.value));
-          break;
-        }
-        add_event(EventKind::m_code, code.number);
-        constexpr int kOfControl[] = {10, 11, 40, 41, 42, 43, 44, 45, 48, 49, 70};
-        if (std::ranges::find(kOfControl, code.number) == std::end(kOfControl))
-          report_.warning(code.offset, "machine-function",
-                          fmt::format("M{} is a function of the machine's maker; what it moves is not known, and it is "
-                                      "passed over",
-                                      code.number),
-                          "machine-function");
-        break;
-      }
+    const int m = code.number;
+    const auto is = [m](std::initializer_list<int> codes) { return std::ranges::find(codes, m) != codes.end(); };
+    if (is({0, 1, 2, 5, 9, 17, 30})) continue;  // at the end of the block
+    if (is({3, 4, 13, 14})) {
+      start_spindle(code);
+    } else if (m == 6) {
+      change_tool(code.offset);
+    } else if (is({7, 8})) {
+      add_coolant(m);
+    } else if (m == 19) {
+      add_event(EventKind::spindle_orient, 0);
+    } else if (m == 60) {
+      add_event(EventKind::pallet, 60);
+    } else if (m < 0) {
+      error(code.offset, "unknown-m", fmt::format("M{:g} is no M function; a whole number was expected", code.value));
+    } else {
+      add_event(EventKind::m_code, m);
+      if (!is({10, 11, 40, 41, 42, 43, 44, 45, 48, 49, 70}))
+        report_.warning(code.offset, "machine-function",
+                        fmt::format("M{} is a function of the machine's maker; what it moves is not known, and it is "
+                                    "passed over",
+                                    m),
+                        "machine-function");
     }
   }
-  return true;
 }
 
 bool BlockRunner::read_m_codes_after(bool& ends_subprogram) {
   bool go_on = true;
   for (const CodeWord& code : words_.m) {
-    switch (code.number) {
-      case 5:
-        if (code.spindle != main_spindle_) break;
-        state_.spindle = SpindleDirection::stopped;
-        change_state();
-        add_event(EventKind::spindle_stop, 0);
-        break;
-      case 9:
-        state_.coolant = false;
-        change_state();
-        add_event(EventKind::m_code, 9);
-        break;
-      case 0:
-      case 1:
-        add_event(EventKind::m_code, code.number);
-        break;
-      case 17:
-        ends_subprogram = true;
-        break;
-      case 2:
-      case 30:
-        add_event(EventKind::m_code, code.number);
-        go_on = false;
-        break;
-      default:
-        break;
+    const int m = code.number;
+    if ((m == 5 && code.spindle == main_spindle_) || m == 9) {
+      if (m == 5) state_.spindle = SpindleDirection::stopped;
+      if (m == 9) state_.coolant = false;
+      change_state();
+      add_event(m == 5 ? EventKind::spindle_stop : EventKind::m_code, m == 5 ? 0 : 9);
     }
+    if (m == 0 || m == 1 || m == 2 || m == 30) add_event(EventKind::m_code, m);
+    if (m == 2 || m == 30) go_on = false;
+    if (m == 17) ends_subprogram = true;
   }
   return go_on;
 }

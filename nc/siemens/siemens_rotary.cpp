@@ -9,11 +9,8 @@
 #include "nc/siemens/block_runner.h"
 
 namespace camber::nc::siemens {
-namespace {
 
 constexpr char kAxisLetters[] = "XYZ";
-
-}  // namespace
 
 const RotaryOption* BlockRunner::rotary_axis(char letter) const { return rotary_axis_of(options_.rotary_axes, letter); }
 

@@ -12,11 +12,8 @@
 #include "nc/siemens/siemens_language.h"
 
 namespace camber::nc::siemens {
-namespace {
 
 constexpr std::size_t kMaxLevels = 16;
-
-}  // namespace
 
 Sequencer::Sequencer(const Program& program, const InterpreterOptions& options, Diagnostics& diagnostics,
                      Reporter& report, Interpretation& out)

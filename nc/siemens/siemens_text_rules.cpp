@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "nc/emit/block_writer.h"
-#include "nc/emit/letter_arcs.h"
+#include "nc/emit/text_rules.h"
 #include "nc/siemens/line_parser.h"
 #include "nc/siemens/siemens_language.h"
 

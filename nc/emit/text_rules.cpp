@@ -1,4 +1,4 @@
-#include "nc/emit/letter_arcs.h"
+#include "nc/emit/text_rules.h"
 
 #include <algorithm>
 
