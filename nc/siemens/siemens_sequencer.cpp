@@ -475,7 +475,8 @@ void Sequencer::run_word(const Item& item) {
     return;
   }
   const char letter = name[0];
-  const double extension = item.index == kNone ? runner_.main_spindle() : evaluator_.known_number(item.index, name);
+  const double extension =
+      item.index == kNone ? runner_.modes().main_spindle() : evaluator_.known_number(item.index, name);
   BlockWords& words = runner_.words();
   switch (letter) {
     case 'N':
@@ -498,10 +499,10 @@ void Sequencer::run_word(const Item& item) {
       break;
     }
     case 'S':
-      if (static_cast<int>(extension) != runner_.main_spindle()) {
+      if (static_cast<int>(extension) != runner_.modes().main_spindle()) {
         const double rpm = word_value(item, name);
-        return runner_.note_speed(static_cast<int>(extension),
-                                  {true, !item.constant, item.dimension, rpm, item.offset});
+        return runner_.modes().note_speed(static_cast<int>(extension),
+                                          {true, !item.constant, item.dimension, rpm, item.offset});
       }
       break;
     case 'H':
@@ -529,15 +530,11 @@ void Sequencer::run_command_word(const Item& item) {
     return set_extra(item, static_cast<Extra>(std::ranges::find(kExtraNames, row.name) - kExtraNames.begin()));
   switch (row.does) {
     case Does::modal_rounding:
-      return runner_.set_modal_rounding(word_value(item, row.name));
     case Does::contour_tolerance:
-      return runner_.set_contour_tolerance(word_value(item, row.name));
     case Does::offset_normal:
-      return runner_.set_offset_normal(word_value(item, row.name));
     case Does::corner_feed:
-      return runner_.set_corner_feed(word_value(item, row.name), row.name == "FRCM");
     case Does::block_feed:
-      return runner_.set_block_feed(word_value(item, row.name));
+      return runner_.set_number(row, word_value(item, row.name));
     case Does::spindle_position:
       return runner_.orient_spindle();
     case Does::position_axis: {
@@ -581,9 +578,10 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
     case Does::nothing:
       return;
     case Does::main_spindle:
-      runner_.set_main_spindle(item.count > 0 && tree().arguments[item.first] != kNone
-                                   ? static_cast<int>(evaluator_.known_number(tree().arguments[item.first], "SETMS"))
-                                   : 1);
+      runner_.modes().set_main_spindle(
+          item.count > 0 && tree().arguments[item.first] != kNone
+              ? static_cast<int>(evaluator_.known_number(tree().arguments[item.first], "SETMS"))
+              : 1);
       return;
     case Does::alarm: {
       const double number =
@@ -602,7 +600,7 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
       return start_subprogram(name, item, times, false);
     }
     case Does::workpiece:
-      return runner_.set_stock(cycle_call(item), called_from());
+      return runner_.cycles().set_stock(cycle_call(item), called_from());
     case Does::transform_on:
     case Does::transform_off:
       return runner_.set_command(*item.row, item.offset);
@@ -620,7 +618,7 @@ void Sequencer::run_call(const Item& item, std::size_t times, const Statement&) 
         return;
       }
       const BlockPlace here = place();
-      return runner_.run_pattern(cycle_call(item), here, [&] { runner_.run_cycle(*modal_->cycle, here); });
+      return runner_.cycles().run_pattern(cycle_call(item), here, [&] { runner_.run_cycle(*modal_->cycle, here); });
     }
     default:
       break;
