@@ -84,6 +84,16 @@ TEST(CycleTime, OverlappingRapidsSaveTheEndOfTheBraking) {
   EXPECT_NEAR(apart - cycle_time(p.program, m).all.time.positioning_s, 0.5 * 500 / 2500, 1e-9);
 }
 
+/// A rapid that is shorter than the braking before it begins early by half of its own time.
+TEST(CycleTime, AShortRapidOverlapsByHalfOfIts) {
+  machine::Machine m = quick_machine();
+  tests::TestProgram p;
+  p.rapid(400, 0, 0).rapid(400, 1, 0);
+  const double apart = cycle_time(p.program, m).all.time.positioning_s;
+  m.cycle.rapid_overlap_percent = 50;
+  EXPECT_NEAR(apart - cycle_time(p.program, m).all.time.positioning_s, std::sqrt(1 / 2500.0), 1e-9);
+}
+
 TEST(CycleTime, OverridesActOnTheirKind) {
   machine::Machine m = quick_machine();
   tests::TestProgram p;

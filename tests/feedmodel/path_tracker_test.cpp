@@ -68,6 +68,18 @@ TEST(PathTracker, IsThreeShortBlocksBehind) {
   EXPECT_TRUE(seen);
 }
 
+/// Axes that run past the end of a move are not past it on the path.
+TEST(PathTracker, StaysOnItsMove) {
+  tests::TestProgram p;
+  p.line(10, 0, 0, 600).line(0, 0, 0, 600);
+  PathTracker tracker(p.program);
+  tracker({.command_mm = {9.9, 0, 0}, .position_mm = {9.9, 0, 0}});
+  const PathPlace place = tracker({.command_mm = {10, 0, 0}, .position_mm = {10.15, 0, 0}});
+  EXPECT_EQ(place.move, 0u);
+  EXPECT_DOUBLE_EQ(place.u, 1);
+  EXPECT_NEAR(place.distance_mm, 0.15, 1e-12);
+}
+
 TEST(PathTracker, TurnsTheCorner) {
   tests::TestProgram p;
   p.line(20, 0, 0, 2400).line(20, 20, 0, 2400);
