@@ -13,8 +13,9 @@ namespace {
 TEST(Uncertainty, ReadsTheCommentsOfFittedFiles) {
   const tests::TempFolder folder;
   const auto groups = read_uncertainty(
-      folder.write("m.toml", "# ktc_MPa: 800 +- 12 MPa\n# kte_N_per_mm: 20 +- 3 N/mm\n# kre_N_per_mm: 5 +- 0 N/mm\n"
-                             "ktc_MPa = 800\n# axis.x.position_gain_per_s: 30 +- 0.5 1/s\n"));
+      folder.write("m.toml",
+                   "# ktc_MPa: 800 +- 12 MPa\n# kte_N_per_mm: 20 +- 3 N/mm\n# kre_N_per_mm: 5 +- 0 N/mm\n"
+                   "ktc_MPa = 800\n# axis.x.position_gain_per_s: 30 +- 0.5 1/s\n"));
   ASSERT_EQ(groups.size(), 3u);
   EXPECT_EQ(groups[0].name, "cutting");
   EXPECT_EQ(groups[1].name, "drives");
