@@ -34,6 +34,16 @@ TEST(Limits, OverlapBesideASlowBlock) {
   EXPECT_DOUBLE_EQ(overlap_speed(fast, short_row, true), 0.02 / 1 * 100);
 }
 
+/// At a reversal the load stays until the motor has taken up the play.
+TEST(Backlash, IsLostAtAReversal) {
+  Backlash load(0.02, 0);
+  EXPECT_DOUBLE_EQ(load(1), 0.99);
+  EXPECT_DOUBLE_EQ(load(0.985), 0.99);
+  EXPECT_DOUBLE_EQ(load(0.5), 0.51);
+  Backlash none(0, 0);
+  EXPECT_EQ(none(1), 1);
+}
+
 TEST(Corner, SpeedDifferenceIsTheFanucForm) {
   EXPECT_NEAR(speed_difference_limit(Vec3::UnitX(), Vec3::UnitY(), Vec3(4, 5, 6)), 4, 1e-12);
   EXPECT_TRUE(std::isinf(speed_difference_limit(Vec3::UnitX(), Vec3::UnitX(), Vec3(4, 5, 6))));
