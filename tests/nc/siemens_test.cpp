@@ -335,6 +335,19 @@ TEST(Siemens, DrillingCycles) {
   EXPECT_EQ(heights("CYCLE86(10,0,2,-5,,0,3,-1,0,1,0)"), (std::vector<double>{2, -5, -4, 2, 10}));
 }
 
+TEST(Siemens, OneValueFillsAnArray) {
+  const Read r = read_siemens("DEF REAL A[3]\nA[0]=REP(4)\nG0 X=A[0] Y=A[2] Z0\nA[1]=SET(7)\nX=A[1] Y=A[2]\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(r.moves.moves.at(0).end_mm, {4, 4, 0});
+  expect_near_mm(r.moves.moves.at(1).end_mm, {7, 4, 0});
+}
+
+TEST(Siemens, ReadsAWorkOffsetByItsNumberAndAxis) {
+  const Read r = read_siemens("$P_UIFR[2]=CTRANS(X,10,Y,25)\nG500\nG0 X=$P_UIFR[2,Y,TR] Y=$P_UIFR[2,X,TR] Z0\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(r.moves.moves.at(0).end_mm, {25, 10, 0});
+}
+
 TEST(Siemens, PatternsOfHoles) {
   const Read r = read_siemens(
       "F100\nG0 X0 Y0 Z20\nMCALL CYCLE81(10,0,2,-5)\nHOLES1(10,0,0,0,10,3)\nHOLES2(0,0,20,0,90,4)\nMCALL\n");
