@@ -36,6 +36,9 @@ TEST(ChooseRound, OfTwoRoundsAlikeTheOneThatMakesLessWorseIsTaken) {
   EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {5, 10, 2, false, 3}, {5.2, 10.4, 2, false, 1}}, 8), 2u);
   EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {5, 10, 2, false, 3}, {6, 12, 2, false, 1}}, 8), 1u);
   EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {6, 12, 2, false, 1}, {5, 10, 2, false, 3}}, 8), 2u);
+  // By more than 0.1 um.
+  EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {5, 10, 2, false, 3.101}, {5.2, 10.4, 2, false, 3}}, 8), 2u);
+  EXPECT_EQ(choose_round(std::vector<RoundFigures>{given, {5, 10, 2, false, 3.099}, {5.2, 10.4, 2, false, 3}}, 8), 1u);
 }
 
 }  // namespace

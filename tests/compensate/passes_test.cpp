@@ -116,8 +116,8 @@ TEST(Passes, RunsStandAsOftenAsTheyAreChosen) {
   const std::vector<double> left =
       left_after_passes_mm(found, chosen, path, observations, std::vector{0.01, 0.01, 0.01});
   EXPECT_DOUBLE_EQ(left[0], 0.01);
-  EXPECT_DOUBLE_EQ(left[1], 0.01 * kLeftByCut * kLeftByCut);
-  EXPECT_DOUBLE_EQ(left[2], 0.01 * kLeftByCut);
+  EXPECT_DOUBLE_EQ(left[1], 0.01 / 16);  // a cut leaves a quarter
+  EXPECT_DOUBLE_EQ(left[2], 0.01 / 4);
 }
 
 TEST(Passes, RunsThatLeaveAnotherModalStateBehindAreFound) {

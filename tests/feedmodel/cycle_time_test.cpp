@@ -84,6 +84,28 @@ TEST(CycleTime, OverlappingRapidsSaveTheEndOfTheBraking) {
   EXPECT_NEAR(apart - cycle_time(p.program, m).all.time.positioning_s, 0.5 * 500 / 2500, 1e-9);
 }
 
+TEST(CycleTime, AnExactStopIsAtTheEndOfItsMove) {
+  tests::TestProgram p;
+  for (int i = 1; i <= 5; ++i) p.line(10 * i, 0, 0, 6000);
+  p.program.moves[1].exact_stop = true;
+  machine::Machine m = quick_machine();
+  m.control.corner.law = machine::CornerLaw::blend;
+  const CycleTime time = cycle_time(p.program, m);
+  const double half_stop_s = 0.5 * 100 / 2500;
+  for (const std::size_t move : {0, 1, 2, 4}) EXPECT_NEAR(time.move_s[move], 0.1 + half_stop_s, 1e-5) << move;
+  EXPECT_NEAR(time.move_s[3], 0.1, 1e-5);
+}
+
+/// A rapid that is shorter than the braking before it begins early by half of its own time.
+TEST(CycleTime, AShortRapidOverlapsByHalfOfIts) {
+  machine::Machine m = quick_machine();
+  tests::TestProgram p;
+  p.rapid(400, 0, 0).rapid(400, 1, 0);
+  const double apart = cycle_time(p.program, m).all.time.positioning_s;
+  m.cycle.rapid_overlap_percent = 50;
+  EXPECT_NEAR(apart - cycle_time(p.program, m).all.time.positioning_s, std::sqrt(1 / 2500.0), 1e-9);
+}
+
 TEST(CycleTime, OverridesActOnTheirKind) {
   machine::Machine m = quick_machine();
   tests::TestProgram p;

@@ -6,6 +6,7 @@
 #include "feedmodel/corner.h"
 #include "feedmodel/drive.h"
 #include "feedmodel/limits.h"
+#include "feedmodel/overlap.h"
 #include "tests/support/test_program.h"
 
 namespace camber::feedmodel {
@@ -21,6 +22,26 @@ TEST(Limits, BlockTimeAndArcs) {
   EXPECT_DOUBLE_EQ(mm_per_min_from_mm_per_s(block_time_speed(0.13333333333333333, 0.001)), 8000);  // KAKEN eq. 3
   EXPECT_NEAR(mm_per_min_from_mm_per_s(arc_speed(10, 3500, 1)), 11225, 1);                         // Takata B6
   EXPECT_NEAR(mm_per_min_from_mm_per_s(arc_servo_speed(10, 0.01, 33, 90, 8)), 4063, 1);            // Takata B7
+}
+
+/// v_b of docs/feed-model.md, also beside blocks slower than 1 mm/s.
+TEST(Limits, OverlapBesideASlowBlock) {
+  const PlanRow fast{.length_mm = 100, .speed_limit_mm_per_s = 10, .acceleration_mm_per_s2 = 100};
+  const PlanRow slow{.length_mm = 0.02, .speed_limit_mm_per_s = 0.5, .acceleration_mm_per_s2 = 100};
+  EXPECT_DOUBLE_EQ(overlap_speed(fast, slow, false), 0.02 / 0.5 * 100);
+  EXPECT_DOUBLE_EQ(overlap_speed(slow, fast, false), 0.5);
+  const PlanRow short_row{.length_mm = 0.02, .speed_limit_mm_per_s = 10, .acceleration_mm_per_s2 = 100};
+  EXPECT_DOUBLE_EQ(overlap_speed(fast, short_row, true), 0.02 / 1 * 100);
+}
+
+/// At a reversal the load stays until the motor has taken up the play.
+TEST(Backlash, IsLostAtAReversal) {
+  Backlash load(0.02, 0);
+  EXPECT_DOUBLE_EQ(load(1), 0.99);
+  EXPECT_DOUBLE_EQ(load(0.985), 0.99);
+  EXPECT_DOUBLE_EQ(load(0.5), 0.51);
+  Backlash none(0, 0);
+  EXPECT_EQ(none(1), 1);
 }
 
 TEST(Corner, SpeedDifferenceIsTheFanucForm) {

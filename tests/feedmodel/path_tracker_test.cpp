@@ -68,6 +68,30 @@ TEST(PathTracker, IsThreeShortBlocksBehind) {
   EXPECT_TRUE(seen);
 }
 
+/// The axes may be behind by twice their distance from the command, and no further: not by a whole turn of a square.
+TEST(PathTracker, DoesNotJumpOverAClosedFigureFarFromTheOrigin) {
+  tests::TestProgram p;
+  p.rapid(100, 100, 0).line(101, 100, 0, 600).line(101, 101, 0, 600).line(100, 101, 0, 600).line(100, 100, 0, 600);
+  p.line(101, 100.02, 0, 600);
+  PathTracker tracker(p.program);
+  const TimedSample behind{.command_mm = {100.5, 100.01, 0}, .position_mm = {100.5, 100.008, 0}, .move = 5};
+  tracker({.command_mm = {100, 100, 0}, .position_mm = {100, 100, 0}, .move = 0});
+  ASSERT_EQ(tracker({.command_mm = {100.49, 100, 0}, .position_mm = {100.49, 100, 0}, .move = 1}).move, 1u);
+  EXPECT_EQ(tracker(behind).move, 1u);
+}
+
+/// Axes that run past the end of a move are not past it on the path.
+TEST(PathTracker, StaysOnItsMove) {
+  tests::TestProgram p;
+  p.line(10, 0, 0, 600).line(0, 0, 0, 600);
+  PathTracker tracker(p.program);
+  tracker({.command_mm = {9.9, 0, 0}, .position_mm = {9.9, 0, 0}});
+  const PathPlace place = tracker({.command_mm = {10, 0, 0}, .position_mm = {10.15, 0, 0}});
+  EXPECT_EQ(place.move, 0u);
+  EXPECT_DOUBLE_EQ(place.u, 1);
+  EXPECT_NEAR(place.distance_mm, 0.15, 1e-12);
+}
+
 TEST(PathTracker, TurnsTheCorner) {
   tests::TestProgram p;
   p.line(20, 0, 0, 2400).line(20, 20, 0, 2400);

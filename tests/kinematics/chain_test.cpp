@@ -290,6 +290,8 @@ TEST(Chain, ThreeRotaryAxesAreSolvedByNewton) {
     for (int k = 0; k < 3; ++k) near.rotary_rad[k] += nudge(random);
     const Branches found = chain.branches(pose, kLengthMm, near);
     ASSERT_EQ(found.count, 1U);
+    EXPECT_NEAR(found.pole_distance_rad, std::acos(std::min(1.0, std::abs(pose.axis.y()))),
+                1e-7);  // from B, next to the part
     expect_same_pose(chain.pose(found.joints[0], kLengthMm), pose);
     if (HasFailure()) return;
   }
@@ -321,6 +323,29 @@ TEST(Chain, UnwindsWhereTheNearestWindingIsOutsideTravel) {
   EXPECT_EQ(s.reach, Reach::reached);
   EXPECT_NEAR(deg_from_rad(s.joints.rotary_rad.z()), -150, 1e-9);
   EXPECT_NEAR(s.joints.rotary_rad.y(), 0.5, 1e-12);
+}
+
+TEST(Chain, UnwindsUpwardsWhereTravelIsMostlyAboveZero) {
+  machine::Machine m = sample("head_table");
+  m.rotary[1].travel_rad = {rad_from_deg(-5), rad_from_deg(100)};
+  m.rotary[2].travel_rad = {rad_from_deg(-30), rad_from_deg(700)};
+  const Chain chain(m);
+  Joints q;
+  q.rotary_rad = {0, 0.5, rad_from_deg(-40)};
+  const Solution s = chain.solve(chain.pose(q, 50), 50, q);
+  EXPECT_EQ(s.reach, Reach::reached);
+  EXPECT_NEAR(deg_from_rad(s.joints.rotary_rad.z()), 320, 1e-9);
+}
+
+/// A rotary axis of the head, also next to those of the table, does not turn the table.
+TEST(Chain, TheTableTurnsAboutItsOwnAxesOnly) {
+  machine::Machine m = sample("head_table");
+  for (const char* chain : {"cxyzb", "cbxyz"}) {
+    m.kinematics.chain = chain;
+    m.kinematics.table_axes = 1;
+    EXPECT_EQ(Chain(m).table_rotation(Vec3(0, 0.4, 0.7)), Chain(m).table_rotation(Vec3(0, 0, 0.7)));
+    EXPECT_NEAR(std::abs(Chain(m).table_rotation(Vec3(0, 0.4, 0.7))(1, 0)), std::sin(0.7), 1e-12);
+  }
 }
 
 TEST(Chain, NamesTheAxisThatLeavesItsTravel) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinematics/control_options.h"
 #include "kinematics/machine_moves.h"
 #include "kinematics/offset_check.h"
 #include "tests/kinematics/machines.h"
@@ -19,6 +20,24 @@ MachineProgram opened(const std::string& text, RotaryWords rotary = RotaryWords:
   MachineProgram out = open_program(SourceText("p.nc", text), tests::sample("table_bc"), {.rotary = rotary}, found);
   EXPECT_FALSE(found.has_errors());
   return out;
+}
+
+TEST(ReadingOptions, OnAMachineOfAClassAToolIsAsLongAsItStandsOut) {
+  machine::Job job;
+  job.machine.path = "preset:any";
+  job.tools[4].overhang_mm = 40;
+  job.tools[4].holder = {{.length_mm = 35}, {.length_mm = 60}};
+  EXPECT_EQ(reading_of(job).tool_offsets.at(4).length_mm, 135);
+}
+
+TEST(EmitOptions, DecimalsFollowTheLeastIncrement) {
+  machine::Control control;
+  const nc::EmitOptions own = decimals_for(control, {});
+  EXPECT_EQ(own.decimals_mm, 3);
+  EXPECT_EQ(own.decimals_inch, 4);
+  control.least_increment_mm = 0.00001;
+  EXPECT_EQ(decimals_for(control, {}).decimals_mm, 5);
+  EXPECT_EQ(decimals_for(control, {}).decimals_inch, 6);
 }
 
 TEST(MachineProgram, MovesOfThreeAxesAreTheSameInEveryFrame) {

@@ -142,6 +142,24 @@ TEST(ProgramJoints, AxesBecomeKnownOneByOne) {
   EXPECT_TRUE(joints.done());
 }
 
+/// In a frame turned by 90 degrees the programmed X is Y of the machine, and the open Y its X.
+TEST(ProgramJoints, ATurnedFrameAsksForThoseAxesOnlyThatItNeeds) {
+  const machine::Machine machine = sample("head_table");
+  const Read r = read(SourceText("p.nc",
+                                 "G10 L2 P1 X10 Y20 Z-300\nG54 G0 X1 Y2\nG53 Z-5\nG43 H1\nG28 G91 Y0\n"
+                                 "G90 G68 X0 Y0 R90.\nX6\n"),
+                      machine, "fanuc", 100);
+  ProgramJoints joints(machine, r.moves);
+  joints.next();
+  joints.next();
+  EXPECT_FALSE(joints.next().linear_known);  // G28 Y
+  EXPECT_TRUE(joints.next().linear_known);
+  EXPECT_NEAR(joints.end_linear_mm().x(), 11, 1e-9);
+  EXPECT_NEAR(joints.end_linear_mm().y(), 26, 1e-9);
+  EXPECT_NEAR(joints.end_linear_mm().z(), -5, 1e-9);
+  EXPECT_TRUE(joints.done());
+}
+
 TEST(ProgramJoints, DirectionsBecomeTheNearestAngles) {
   const machine::Machine machine = sample("head_table");
   const Read r = read(SourceText("p.nc",

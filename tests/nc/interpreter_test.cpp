@@ -93,6 +93,11 @@ TEST(NcInterpreter, WarnsOfRadiiThatDifferAndRefusesWhatIsTooFarOff) {
       Messages{
           "p.nc:2:1: error: the radius of the arc is 10.0000 mm at its start and 11.0000 mm at its end; a difference "
           "below 0.05 mm was expected [arc-radius]"});
+  const auto message = [](const char* y) {
+    return read_text(std::string("G0 X10 Y0 Z0\nG3 X0 Y") + y + " I-10 J0 F100\n").messages.at(0);
+  };
+  EXPECT_NE(message("10.0495").find(" warning: "), std::string::npos);
+  EXPECT_NE(message("10.0505").find(" error: "), std::string::npos);
 }
 
 TEST(NcInterpreter, FeedsInAllThreeModes) {

@@ -322,9 +322,30 @@ TEST(Siemens, DrillingCycles) {
   EXPECT_EQ(heights("CYCLE83(10,0,1,-12,,,5,1,,,1,1,,,,,0.5)"),
             (std::vector<double>{1, -5, 1, -4.5, -9, 1, -8.5, -12, 10}));
   EXPECT_EQ(heights("CYCLE83(10,0,1,-6,,,3,0,,,1,0,,,0.2)"), (std::vector<double>{1, -3, -2.8, -6, 10}));
+  // Without a distance given, the tool stops ahead of the depth by a fiftieth of that of the hole, at most 7 mm.
+  EXPECT_EQ(heights("CYCLE83(10,0,1,-200,,,150,100,,,1,1)"), (std::vector<double>{1, -150, 1, -146, -200, 10}));
+  EXPECT_EQ(heights("CYCLE83(10,0,1,-400,,,300,100,,,1,1)"), (std::vector<double>{1, -300, 1, -293, -400, 10}));
+  // A factor is at least 0.001, and a stroke that it gives at least MDEP.
+  const auto shrinking = heights("CYCLE83(10,0,1,-100.15,,,100,-0.0005,,,1,0,,0.05,0.2)");
+  const std::vector<double> expected{1, -100, -99.8, -100.1, -99.9, -100.15, 10};
+  ASSERT_EQ(shrinking.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(shrinking[i], expected[i], 1e-9);
   EXPECT_EQ(heights("CYCLE84(10,0,2,-5,,,,,1.25,0,500)"), (std::vector<double>{2, -5, 2, 10}));
   EXPECT_EQ(heights("CYCLE85(10,0,2,-5,,0,80,160)"), (std::vector<double>{2, -5, 2, 10}));
   EXPECT_EQ(heights("CYCLE86(10,0,2,-5,,0,3,-1,0,1,0)"), (std::vector<double>{2, -5, -4, 2, 10}));
+}
+
+TEST(Siemens, OneValueFillsAnArray) {
+  const Read r = read_siemens("DEF REAL A[3]\nA[0]=REP(4)\nG0 X=A[0] Y=A[2] Z0\nA[1]=SET(7)\nX=A[1] Y=A[2]\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(r.moves.moves.at(0).end_mm, {4, 4, 0});
+  expect_near_mm(r.moves.moves.at(1).end_mm, {7, 4, 0});
+}
+
+TEST(Siemens, ReadsAWorkOffsetByItsNumberAndAxis) {
+  const Read r = read_siemens("$P_UIFR[2]=CTRANS(X,10,Y,25)\nG500\nG0 X=$P_UIFR[2,Y,TR] Y=$P_UIFR[2,X,TR] Z0\n");
+  EXPECT_EQ(r.messages, Messages{});
+  expect_near_mm(r.moves.moves.at(0).end_mm, {25, 10, 0});
 }
 
 TEST(Siemens, PatternsOfHoles) {
