@@ -101,6 +101,14 @@ TEST(NcEmit, ArcsByRadiusGetANewRadius) {
   EXPECT_EQ(out, "G0 X10. Y0. Z0.\nG3 X-0.5 Y10.5 R10.253 F100\n");
 }
 
+/// No arc of a quarter turn fits where its end is asked for at its start.
+TEST(NcEmit, AnArcWithoutRoomIsTheOldOneWhereTheToolStands) {
+  const Read r = read_clean("G0X0.Y0.Z0.\nG1X10.F100\nG3X0.Y10.I-10.J0.\n");
+  const Vec3 stands(10.5, 0.2, 0);
+  const std::vector<MoveEdit> edits{{.move = 1, .end_mm = stands}, {.move = 2, .end_mm = stands}};
+  EXPECT_EQ(emit(r.program, r.moves, edits, {}), "G0X0.Y0.Z0.\nG1X10.5Y0.2F100\nG3X0.5Y10.2I-10.J0.\n");
+}
+
 TEST(NcEmit, FullTurnsStayClosed) {
   EXPECT_EQ(emitted("G0X10.Y0.Z0.\nG1X9.F100\nG3I-9.\nX9.Y0.Z-1.I-9.J0.\n", {0.1, 0, 0}, {1, 2, 3}),
             "G0X10.Y0.Z0.\nG1X9.1F100\nG3I-9.\nX9.1Y0.Z-1.I-9.J0.\n");
