@@ -103,10 +103,10 @@ TEST(NcEmit, ArcsByRadiusGetANewRadius) {
 
 /// No arc of a quarter turn fits where its end is asked for at its start.
 TEST(NcEmit, AnArcWithoutRoomIsTheOldOneWhereTheToolStands) {
-  const Read r = read_clean("G0X0.Y0.Z0.\nG1X10.F100\nG3X0.Y10.I-10.J0.\n");
-  const Vec3 stands(10.5, 0.2, 0);
+  const Read r = read_clean("G0X0.Y0.Z0.\nG1X20.F100\nG3X10.Y10.I-10.J0.\n");
+  const Vec3 stands(20.5, 0.2, 0);
   const std::vector<MoveEdit> edits{{.move = 1, .end_mm = stands}, {.move = 2, .end_mm = stands}};
-  EXPECT_EQ(emit(r.program, r.moves, edits, {}), "G0X0.Y0.Z0.\nG1X10.5Y0.2F100\nG3X0.5Y10.2I-10.J0.\n");
+  EXPECT_EQ(emit(r.program, r.moves, edits, {}), "G0X0.Y0.Z0.\nG1X20.5Y0.2F100\nG3X10.5Y10.2I-10.J0.\n");
 }
 
 TEST(NcEmit, FullTurnsStayClosed) {
