@@ -246,15 +246,50 @@ double nothing_mm3(const Job& job) { return std::pow(job.simulation.voxel_mm, 3)
 
 }  // namespace
 
+namespace {
+
+/// Sweeps the stamps whose tip ends at the underside once more, so low that the smaller cutter reaches it.
+double sweep_through(removal::Stock& stock, const removal::CutterShape& shape, std::span<const removal::Stamp> stamps,
+                     const removal::SweepOptions& options) {
+  const double underside_mm = stock.min_mm().z();
+  const auto ends_there = [&](const removal::Stamp& s) {
+    return s.pose.upright() && std::abs(s.pose.tip_mm.z() - underside_mm) < options.shrink_mm;
+  };
+  double removed_mm3 = 0;
+  std::vector<removal::Stamp> low;
+  for (std::size_t k = 0; k <= stamps.size(); ++k) {
+    if (k < stamps.size() && ends_there(stamps[k])) {
+      low.push_back(stamps[k]);
+      low.back().pose.tip_mm.z() = underside_mm - options.shrink_mm;
+      continue;
+    }
+    if (low.empty()) continue;
+    const auto first = options.first_id + static_cast<std::int32_t>(k - low.size());
+    removed_mm3 += removal::sweep(stock, shape, low, {.shrink_mm = options.shrink_mm, .first_id = first});
+    low.clear();
+  }
+  return removed_mm3;
+}
+
+}  // namespace
+
+double sweep_run(removal::Stock& stock, const Job& job, const removal::ToolRun& run,
+                 std::span<const removal::Stamp> stamps, const removal::SweepOptions& options) {
+  const bool milling = run.kind == removal::RunKind::milling;
+  if (options.shrink_mm > 0 && !milling) return 0;
+  const removal::CutterShape shape = removal::shape_of(job.tools.at(run.tool));
+  const double removed_mm3 = removal::sweep(stock, shape, stamps, options);
+  return removed_mm3 + (options.shrink_mm > 0 ? sweep_through(stock, shape, stamps, options) : 0);
+}
+
 double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPath& path, double shrink_mm,
                   const std::string& what) {
   Stage stage(what, path.stamps.size());
   double removed_mm3 = 0;
-  for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
-    if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
+  for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool&, auto stamps) {
     removed_mm3 +=
-        removal::sweep(stock, removal::shape_of(tool), stamps,
-                       {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(run.from), .stage = &stage});
+        sweep_run(stock, job, run, stamps,
+                  {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(run.from), .stage = &stage});
   });
   return_freed_memory();  // of tiles
   return removed_mm3;

@@ -173,6 +173,27 @@ TEST(Region, TheAllowanceInWhichARapidEndsIsNoChip) {
   EXPECT_NE(run.out.find(" mm3 of the allowance that rapids end in)"), std::string::npos) << run.out;
 }
 
+TEST(Region, NothingOfTheAllowanceIsLeftWhereATipEndsAtTheUnderside) {
+  // A slot of 4 mm through a plate of 2 mm: a skin of 0.3 mm lies on its two walls, and there is no floor.
+  const TempFolder folder;
+  folder.write("machine.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
+  folder.write("job.toml",
+               "program = \"p.nc\"\nmachine = \"machine.toml\"\n" + tool(1) +
+                   "[material]\nktc_MPa = 20.0\nkrc_MPa = 7.0\n[stock]\nbox_mm = [[0, -8, -2], [8, 8, 0]]\n"
+                   "allowance_mm = 0.3\n[simulation]\nvoxel_mm = 0.1\ncoupling = \"rigid\"\ncollisions = \"off\"\n");
+  for (const char* z : {"-2", "-2.4"}) {
+    folder.write("p.nc", std::string("G21 G90 G17 G40 G49 G80 G54\nT1 M6\nS3000 M3\nG0 X-4 Y0 Z5\nG0 Z") + z +
+                             "\nG1 X12 F900\nG0 Z5\nM30\n");
+    for (const char* in : {"", " --sections 2"}) {
+      const auto run = run_camber(folder, std::string("predict job.toml -o r") + in);
+      EXPECT_EQ(run.status, 0) << run.err;
+      const json removed = json::parse(file_text(folder / "r/summary.json"))["removed_mm3"];
+      for (const char* of : {"path", "stock"})
+        EXPECT_NEAR(removed[of].get<double>(), 2 * 0.3 * 2 * 8, 0.2) << z << in << of;
+    }
+  }
+}
+
 TEST(Region, ThatBeginsBehindARapidIntoTheStockIsWarnedOf) {
   const TempFolder folder;
   folder.write("p.nc",
