@@ -237,8 +237,9 @@ class DeflectedEngager {
   /// less than kNear_mm outside the material are among them, with a negative thickness.
   std::span<const DeflectedChipSample> read(std::size_t k);
   /// Returns the sum of the chips of read() over a fixed set of patches of the envelope, at an eighth of the cost, for
-  /// `count` stamps from stamps[from + k] on. All of them see the present stock: material that earlier stamps have yet
-  /// to cut is deeper than the motion lets a chip be, so that it changes the sum little. Valid until the next call.
+  /// `count` stamps from stamps[from + k] on. All of them see the present stock. Where stamps before it have yet to
+  /// cut, the motion, with the change of the deflection, is taken for the chip wherever the material is as thick. Valid
+  /// until the next call.
   std::span<const double> glance(std::size_t k, std::size_t count);
   /// Returns the sum of glance() for chips that were read.
   double glance_of(std::span<const DeflectedChipSample> chips) const;

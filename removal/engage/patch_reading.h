@@ -55,21 +55,23 @@ class PatchReading {
     return chips_;
   }
 
-  /// Sum of the chip thicknesses in the patches of a glance, mm. Thread safe.
-  double glance(const Reader& reader, const upright::TileArena& arena, std::size_t k) {
+  /// Sum of the chip thicknesses in the patches of a glance, mm; `sharp` as Reader::Reading has it. Thread safe.
+  double glance(const Reader& reader, const upright::TileArena& arena, std::size_t k, bool sharp) {
     Glance& b = glance_.local();
-    const typename Reader::Reading stamp = reader.reading_of(k);
+    const typename Reader::Reading stamp = reader.reading_of(k, sharp);
     reader.find_patches(arena, stamp, b.patches);
     std::erase_if(b.patches, [](std::int32_t patch) { return !glanced_at(static_cast<std::uint32_t>(patch)); });
     b.chips.clear();
     reader.read(arena, stamp, b.patches, buffers_.local(), b.chips);
     return glance_of(b.chips);
   }
-  /// Returns the glances of `count` stamps; valid until the next call.
+  /// Returns the glances of `count` stamps, of which the first `cut` of the stretch were cut; valid until the next
+  /// call.
   std::span<const double> glance(const Reader& reader, const upright::TileArena& arena, std::size_t k,
-                                 std::size_t count) {
+                                 std::size_t count, std::size_t cut) {
     glances_.resize(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { glances_[i] = glance(reader, arena, k + i); });
+    tbb::parallel_for(std::size_t{0}, count,
+                      [&](std::size_t i) { glances_[i] = glance(reader, arena, k + i, k + i > cut); });
     return glances_;
   }
   /// Returns the sum of a glance for chips that were read.

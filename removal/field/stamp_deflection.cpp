@@ -1,8 +1,10 @@
 #include "removal/field/stamp_deflection.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace camber::removal {
 namespace {
@@ -34,6 +36,8 @@ StampDeflections::StampDeflections(const EnvelopeGrid& envelope, const Deflectio
   // A deflection between two nodes belongs to a range of lags; one sector more for interpolation between steps.
   spread_ = std::min(1 + static_cast<int>(std::ceil(envelope.lag_per_mm * node_step / sector)),
                      StampDeflection::kSectors / 2);
+  static_assert(StampDeflection::kSectors == 32);
+  for (int o = -spread_; o <= spread_; ++o) spread_sectors_ |= std::rotl(1u, o);
   for (int n = 0; n < nodes; ++n)
     for (int m = 0; m < deflections.steps; m += group_)
       for (int j = 0; j < flutes_; ++j) {
@@ -63,21 +67,28 @@ StampDeflection StampDeflections::of(std::ptrdiff_t stamp) const {
   float largest2 = 0;
   const auto half_sector = static_cast<float>(kPi / StampDeflection::kSectors);
   static const SectorTable table;
-  std::array<float, SectorTable::kPadded> outward{};  // from sector -kSectors / 2 on
+  constexpr float kNone = -std::numeric_limits<float>::infinity();
+  std::uint32_t without = 0;                        // sectors where edges pass without a deflection
+  std::array<float, SectorTable::kPadded> outward;  // from sector -kSectors / 2 on
+  outward.fill(kNone);
+  deflection.outward_mm.fill(kNone);
   const std::uint8_t* centre = centre_.data();
   for (std::size_t n = 0; n < deflections_.nodes(); ++n)
     for (int m = 0; m < deflections_.steps; m += group_, centre += flutes_) {
       const float* v = deflection.row + 2 * (static_cast<int>(n) * deflections_.steps + m);
       const int count = std::min(group_, deflections_.steps - m);
-      if (all_zero(v, 2 * count)) continue;  // most of a row
       // The others of a group lie within `apart` of its first.
       float longest2 = 0, apart2 = 0;
-      for (int i = 0; i < count; ++i) {
+      const int not_zero = all_zero(v, 2 * count) ? 0 : count;  // most of a row is
+      for (int i = 0; i < not_zero; ++i) {
         const float x = v[2 * i], y = v[2 * i + 1], dx = x - v[0], dy = y - v[1];
         longest2 = std::max(longest2, x * x + y * y);
         apart2 = std::max(apart2, dx * dx + dy * dy);
       }
-      if (longest2 == 0) continue;  // of negative zeros
+      if (longest2 == 0) {
+        for (int j = 0; j < flutes_; ++j) without |= std::rotl(spread_sectors_, centre[j]);
+        continue;
+      }
       largest2 = std::max(largest2, longest2);
       const float more = half_sector * std::sqrt(longest2) + std::sqrt(apart2);
       for (int j = 0; j < flutes_; ++j) {
@@ -89,6 +100,10 @@ StampDeflection StampDeflections::of(std::ptrdiff_t stamp) const {
   for (int o = 0; o < SectorTable::kPadded; ++o) {
     float& of_sector = deflection.outward_mm[(o + StampDeflection::kSectors / 2) & (StampDeflection::kSectors - 1)];
     of_sector = std::max(of_sector, outward[o]);
+  }
+  for (int i = 0; i < StampDeflection::kSectors; ++i) {
+    float& of_sector = deflection.outward_mm[static_cast<std::size_t>(i)];
+    if ((without >> i & 1u) != 0 || of_sector == kNone) of_sector = std::max(of_sector, 0.0f);
   }
   deflection.largest_mm = std::sqrt(static_cast<double>(largest2));
   if (deflection.axial_mm > 0) {

@@ -314,14 +314,15 @@ struct Vectors {
     }
   }
 
-  /// Depth of places inside the straight cutter, and their largest depth inside one that is deflected by `outwards` in
-  /// their direction, by at most `largest` in any, and by at most `axial` along the axis. A lateral deflection changes
-  /// a distance by at most its product with the radial part of the gradient.
+  /// Depth of places inside the straight cutter, and their largest depth inside one that is deflected by at most
+  /// `outwards` in their direction (negative: at least so far inwards), by at most `largest` in any, and by at most
+  /// `axial` along the axis. A lateral deflection changes a distance by at most, or at least, its product with the
+  /// radial part of the gradient, which grows with the distance from the axis.
   struct Inside {
     F straight, most;
     F radial;  ///< part of the gradient, at most
   };
-  static Inside inside_of(const LineCut& c, const F& rho, const F& z, const F& outwards, const F& largest,
+  static Inside inside_of(const LineCut& c, const F& rho, const F& z, float outwards, const F& largest,
                           const F& axial) {
     const F zero(0.0f), one(1.0f);
     const auto place = RoundedCutter<F>{F(c.flat), F(c.corner)}.place(rho, z);
@@ -329,7 +330,13 @@ struct Vectors {
     const F rounded = a / xsimd::max(xsimd::sqrt(a * a + below * below), F(1e-12f));
     const F radial =
         xsimd::select(below > zero, xsimd::min(rounded * F(1.0001f), one), xsimd::select(at_most < below, zero, one));
-    return {-place.distance, outwards * radial - place.distance + axial, radial};
+    F of_outwards = radial;
+    if (outwards < 0) {
+      const F out = xsimd::max(place.outside, zero), low = place.below + axial;
+      const F least = out / xsimd::max(xsimd::sqrt(out * out + low * low), F(1e-12f));
+      of_outwards = xsimd::select(low > zero, least * F(0.9999f), xsimd::select(place.outside > low, one, zero));
+    }
+    return {-place.distance, F(outwards) * of_outwards - place.distance + axial, radial};
   }
 
   /// The deflections at the feet of the columns of a line: good guesses for all of a column, however wide the vectors
@@ -355,8 +362,8 @@ struct Vectors {
     LineResult result;
     const float per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
     const F steps = ramp() * F(c.voxel), band(c.band), dx(c.dx);
-    // How far a deflection moves the envelope outwards in each column; near the axis a deflection turns a place into
-    // another direction.
+    // How far a deflection moves the envelope outwards in each column, at most; near the axis a deflection turns a
+    // place into another direction.
     alignas(64) float slack[LineCut::kLine];
     const F far_out(kFar * c.voxel + deflection.largest_mm);
     const F largest(deflection.largest_mm), axial(deflection.axial_mm),
@@ -376,7 +383,7 @@ struct Vectors {
       feet.y[j] = c.dy + static_cast<float>(j) * c.voxel, feet.z[j] = c.z;
       low[j] = LineCut::kColumns;
       if (j >= LineCut::kColumns || !(c.changeable[j] > 0)) continue;
-      const float y = feet.y[j], reach = c.corner + c.band + slack[j];
+      const float y = feet.y[j], reach = c.corner + c.band + std::max(slack[j], 0.0f);
       rho[j] = std::sqrt(dx2 + y * y);
       const float qx = rho[j] - c.flat;
       if (qx > reach) continue;
@@ -386,12 +393,12 @@ struct Vectors {
     }
     for (int j = 0; j < LineCut::kColumns; ++j) {
       if (low[j] >= c.top[j]) continue;
-      const F dy(feet.y[j]), rhos(rho[j]), outwards(slack[j]);
+      const F dy(feet.y[j]), rhos(rho[j]);
       bool changed = false;
       for_vectors(low[j], c.top[j], [&](int k) {
         float* stock = c.distance + j * LineCut::kColumns + k;
         const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
-        const Inside inside = inside_of(c, rhos, z, outwards, largest, axial);
+        const Inside inside = inside_of(c, rhos, z, slack[j], largest, axial);
         const F most = xsimd::min(inside.most, band);
         const F old = load(stock);
         const auto may = most > old;

@@ -57,6 +57,18 @@ DeflectionTable deflections_of(const std::vector<Stamp>& stamps, const EnvelopeG
   return out;
 }
 
+/// Every point leans the same way, farther than the tool moves from stamp to stamp.
+const Vec3 kLean_mm(-0.15, 0.05, 0);
+
+DeflectionTable leaning(const std::vector<Stamp>& stamps, const EnvelopeGrid& envelope) {
+  DeflectionTable out(stamps.size(), envelope.steps_per_pitch, {0.0, 2.0}, false);
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    const std::span<float> row(out.row(static_cast<std::ptrdiff_t>(k)), out.row_size());
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = static_cast<float>(kLean_mm[static_cast<int>(i % 2)]);
+  }
+  return out;
+}
+
 Stock box() {
   const Vec3 lo(0, -4, -3), hi(8, 4, 0);
   return {[=](const Vec3& p) { return box_distance_mm(p, lo, hi); }, lo, hi, 0.1, 5};
@@ -129,6 +141,36 @@ TEST_P(DeflectedGroups, AGlanceAheadSeesWhatAGlanceAtItsTimeSees) {
   EXPECT_GT(seen, 1);
   // 6 % more or less than foreseen is read (ReadingPace): what a glance ahead errs by may cost a reading.
   EXPECT_LT(std::sqrt(apart2 / seen2), 0.1);
+}
+
+TEST_P(DeflectedGroups, ThatLeanCutAsACutterThatStandsThere) {
+  Stock by_leaning = box(), by_standing = box();
+  std::vector<Stamp> moved = stamps_;
+  for (Stamp& s : moved) s.pose.tip_mm += kLean_mm;
+  const DeflectionTable lean = leaning(stamps_, envelope_);
+  DeflectedEngager engager(by_leaning, blank_, envelope_, stamps_, 0);
+  engager.start(0, stamps_.size(), lean);
+  double ahead = 0, at_its_time = 0;
+  constexpr std::size_t kTogether = 8;
+  for (std::size_t k = 0; k < stamps_.size(); k += kTogether) {
+    for (const double glance : engager.glance(k, kTogether)) ahead += glance;
+    for (std::size_t i = 0; i < kTogether; ++i) {
+      at_its_time += engager.glance(k + i, 1).front();
+      engager.cut(k + i);
+    }
+  }
+  EXPECT_NEAR(ahead / at_its_time, 1, 0.03) << "of chips that are less than half as thick as it leans";
+  const double volume_mm3 = sweep(by_standing, envelope_.shape, moved, {});
+  EXPECT_NEAR(engager.commit() / volume_mm3, 1, 1e-5);
+  double worst = 0;
+  for (int x = -3; x < 84; ++x)
+    for (int y = -42; y < 42; ++y)
+      for (int z = -20; z < 3; ++z) {
+        const auto a = static_cast<double>(by_leaning.voxel({x, y, z})),
+                   b = static_cast<double>(by_standing.voxel({x, y, z}));
+        if (std::min(std::abs(a), std::abs(b)) < 0.1) worst = std::max(worst, std::abs(a - b));
+      }
+  EXPECT_LT(worst, 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cutters, DeflectedGroups,

@@ -72,7 +72,7 @@ ChipReader::ChipReader(const EngagedRun& run, const upright::PatchLanes& lanes, 
         std::max({max_curved_per_mm_, ring.profile.meridian_curvature_per_mm, ring.profile.parallel_curvature_per_mm});
 }
 
-ChipReader::Reading ChipReader::reading_of(std::size_t k) const {
+ChipReader::Reading ChipReader::reading_of(std::size_t k, bool sharp) const {
   const auto from = static_cast<std::size_t>(stamps_.data() - all_.data());
   const std::ptrdiff_t before = static_cast<std::ptrdiff_t>(k) - 1;
   const bool first = stamps_[k].first;
@@ -81,7 +81,8 @@ ChipReader::Reading ChipReader::reading_of(std::size_t k) const {
           StampFrame(stamps_[k].pose),
           motion_in_tool(all_, from + k),
           first ? 0 : deflections_.largest_lateral_mm(before),
-          first ? 0 : deflections_.largest_axial_mm(before)};
+          first ? 0 : deflections_.largest_axial_mm(before),
+          sharp || rule_.rigid};
 }
 
 /// Does what BlockKernels::find_blocks does, with the motion of the patch's centre.
@@ -150,7 +151,7 @@ void ChipReader::sort_points(const TileArena& arena, const Reading& stamp, const
     const float half = wall_half_mm_[ring];
     if (field > std::max(air, half)) continue;
     const float more = reach * envelope_.rings[ring].sine + axial_reach * std::abs(envelope_.rings[ring].cosine);
-    const float limit = rule_.rigid ? cap : std::max(kBeyondCap * cap, cap + more);
+    const float limit = stamp.sharp ? cap : std::max(kBeyondCap * cap, cap + more);
     const std::array<float, 3> along{envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]};
     if (-field > std::max(limit, half)) {
       out.push_back({{p, cap, true}, -field, cap, along});

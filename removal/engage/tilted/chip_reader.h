@@ -70,8 +70,9 @@ class ChipReader {
     /// Chip that a point may take beyond its motion bound, mm: the stamp before had another deflection when it left the
     /// surface there.
     double reach_mm, axial_reach_mm;
+    bool sharp;  ///< the motion bounds the chip sharply: the stamps right before it have yet to cut
   };
-  Reading reading_of(std::size_t k) const;
+  Reading reading_of(std::size_t k, bool sharp = false) const;
 
   /// Lists the patches that may take a chip.
   void find_patches(const upright::TileArena& arena, const Reading& stamp, std::vector<std::int32_t>& out) const;

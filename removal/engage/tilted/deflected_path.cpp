@@ -71,7 +71,8 @@ struct Engager::Impl {
   TileArena arena{};
   std::vector<std::optional<CutTile>> tiles{};  ///< by the arena's numbers
   upright::BendMemory memory{};
-  double removed_mm3 = 0;  ///< volume removed from tiles that were given back since the last commit
+  std::size_t cut_end = 0;  ///< stamps of the stretch that were cut
+  double removed_mm3 = 0;   ///< volume removed from tiles that were given back since the last commit
   std::optional<tbb::enumerable_thread_specific<DeflectedCarver>> carvers{};
   bool keeps = false;            ///< since keep(), in this stretch
   std::vector<KeptTile> kept{};  ///< the first kept_count are in use
@@ -111,7 +112,7 @@ void Engager::remember(std::size_t from, std::span<const float> rows, std::size_
 
 void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
   Impl& m = *impl_;
-  m.from = from;
+  m.from = from, m.cut_end = 0;
   m.stamps = m.run.stamps.subspan(from, count);
   m.deflections = &deflections;
   m.keeps = false;
@@ -135,7 +136,7 @@ std::span<const DeflectedChipSample> Engager::read(std::size_t k) {
 }
 
 std::span<const double> Engager::glance(std::size_t k, std::size_t count) {
-  return impl_->reading->glance(*impl_->reader, impl_->arena, k, count);
+  return impl_->reading->glance(*impl_->reader, impl_->arena, k, count, impl_->cut_end);
 }
 
 double Engager::glance_of(std::span<const DeflectedChipSample> chips) const { return impl_->reading->glance_of(chips); }
@@ -144,7 +145,6 @@ void Engager::Impl::cut(std::size_t k) {
   const auto row = static_cast<std::ptrdiff_t>(k);
   const StampDeflection deflection =
       rule.rigid ? StampDeflection{deflections->row(row), 0, {}} : StampDeflections(envelope, *deflections).of(row);
-  if (!memory.knows(static_cast<std::int32_t>(from + k))) memory.add(deflections->row(row));
   const StampFrame frame(stamps[k].pose);
   const Carving stamp{envelope.shape,
                       profile,
@@ -163,7 +163,12 @@ void Engager::Impl::cut(std::size_t k) {
 }
 
 void Engager::cut(std::size_t k, std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) impl_->cut(k + i);
+  Impl& m = *impl_;
+  for (std::size_t i = k; i < k + count; ++i)
+    if (!m.memory.knows(static_cast<std::int32_t>(m.from + i)))
+      m.memory.add(m.deflections->row(static_cast<std::ptrdiff_t>(i)));
+  for (std::size_t i = count; i-- > 0;) m.cut(k + i);
+  m.cut_end = k + count;
 }
 
 void Engager::keep() {

@@ -43,9 +43,9 @@ float ChipReader::axial_reach_mm(std::size_t k) const {
                           : static_cast<float>(deflections_.largest_axial_mm(static_cast<std::ptrdiff_t>(k) - 1));
 }
 
-void ChipReader::find_patches(const TileArena& arena, std::size_t k, std::vector<std::int32_t>& out) const {
-  const Stamp& stamp = stamps_[k];
-  const auto row = static_cast<std::ptrdiff_t>(k);
+void ChipReader::find_patches(const TileArena& arena, const Reading& at, std::vector<std::int32_t>& out) const {
+  const Stamp& stamp = stamps_[at.k];
+  const auto row = static_cast<std::ptrdiff_t>(at.k);
   const std::ptrdiff_t before = stamp.first ? row : row - 1;
   const double moved = deflections_.largest_mm(row);
   StampPlace place = arena.place_of(stamp, -1e-6);
@@ -70,10 +70,10 @@ StampBend ChipReader::bend_of(std::size_t k) const {
           axial_reach_mm(k)};
 }
 
-void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, Buffers& b,
+void ChipReader::read(const TileArena& arena, const Reading& at, std::span<const std::int32_t> patches, Buffers& b,
                       std::vector<DeflectedChipSample>& out) const {
-  const StampPlace place = arena.place_of(stamps_[k], 0);
-  const StampBend bend = bend_of(k);
+  const StampPlace place = arena.place_of(stamps_[at.k], 0);
+  const StampBend bend = bend_of(at.k);
   const ArenaView tiles = arena.view();
   b.shallow.clear();
   LaneReading reading;
@@ -83,11 +83,11 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
       const int count = std::min(range.count - from, LaneReading::kMax);
       const int whole = (count + PatchLanes::kVector - 1) / PatchLanes::kVector * PatchLanes::kVector;
       kernels_.read_points(view_, range.from + from, whole, place, bend, tiles, reading);
-      sort_points(arena, k, reading, range.from + from, count, bend, b, out);
+      sort_points(arena, at, reading, range.from + from, count, bend, b, out);
     }
   }
   make_room(b);
-  for (Shallow& point : b.shallow) add_pairs(arena, stamps_[k], point, b);
+  for (Shallow& point : b.shallow) add_pairs(arena, stamps_[at.k], point, b);
   if (envelope_.shape.general)
     thin_general(b);
   else
@@ -106,10 +106,10 @@ void ChipReader::read(const TileArena& arena, std::size_t k, std::span<const std
 
 /// Sorts points by what the field shows: deep points give their chips at once, points in air none, the rest are listed
 /// as shallow.
-void ChipReader::sort_points(const TileArena& arena, std::size_t k, const LaneReading& reading, int first_lane,
+void ChipReader::sort_points(const TileArena& arena, const Reading& at, const LaneReading& reading, int first_lane,
                              int count, const StampBend& bend, Buffers& b,
                              std::vector<DeflectedChipSample>& out) const {
-  const float* row = deflections_.row(static_cast<std::ptrdiff_t>(k));
+  const float* row = deflections_.row(static_cast<std::ptrdiff_t>(at.k));
   const float air = 0.5f * static_cast<float>(voxel_mm_);
   for (int l = 0; l < count; ++l) {
     if (reading.cell[l] < 0) continue;
@@ -119,8 +119,10 @@ void ChipReader::sort_points(const TileArena& arena, std::size_t k, const LaneRe
     const std::uint32_t p = lanes_.point(first_lane + l), ring = p / static_cast<std::uint32_t>(envelope_.steps);
     const float half = wall_half_mm_[ring];
     if (field > std::max(air, half)) continue;
-    const float limit = std::max(kBeyondCap * cap, cap + bend.reach_mm * envelope_.rings[ring].sine +
-                                                       bend.axial_reach_mm * std::abs(envelope_.rings[ring].cosine));
+    const float limit =
+        at.sharp ? cap
+                 : std::max(kBeyondCap * cap, cap + bend.reach_mm * envelope_.rings[ring].sine +
+                                                  bend.axial_reach_mm * std::abs(envelope_.rings[ring].cosine));
     const std::array<float, 3> along{envelope_.nx[p], envelope_.ny[p], envelope_.nz[p]};
     if (-field > std::max(limit, half)) {
       out.push_back({{p, cap, true}, -field, cap, along});

@@ -45,15 +45,19 @@ class ChipReader {
   ChipReader(const EngagedRun& run, const PatchLanes& lanes, std::span<const Stamp> stamps,
              const DeflectionTable& deflections, const BendMemory& memory);
 
-  using Reading = std::size_t;  ///< a stamp's index in the stretch
-  Reading reading_of(std::size_t k) const { return k; }
+  /// A stamp that is read.
+  struct Reading {
+    std::size_t k;       ///< index in the stretch
+    bool sharp = false;  ///< the motion bounds the chip sharply: the stamps right before it have yet to cut
+  };
+  Reading reading_of(std::size_t k, bool sharp = false) const { return {k, sharp}; }
 
   /// Lists the patches that may take a chip at stamp k.
-  void find_patches(const TileArena& arena, std::size_t k, std::vector<std::int32_t>& out) const;
+  void find_patches(const TileArena& arena, const Reading& at, std::vector<std::int32_t>& out) const;
   /// Appends the chips that stamp k takes with the points of these patches. Points that the motion leads into the
   /// material, or that the deflection may, and that lie out of it by less than kNear_mm along the normal, say so by a
   /// negative thickness.
-  void read(const TileArena& arena, std::size_t k, std::span<const std::int32_t> patches, Buffers& buffers,
+  void read(const TileArena& arena, const Reading& at, std::span<const std::int32_t> patches, Buffers& buffers,
             std::vector<DeflectedChipSample>& out) const;
 
  private:
@@ -67,7 +71,7 @@ class ChipReader {
   float reach_mm(std::size_t k) const;
   float axial_reach_mm(std::size_t k) const;
   StampBend bend_of(std::size_t k) const;
-  void sort_points(const TileArena& arena, std::size_t k, const LaneReading& reading, int first_lane, int count,
+  void sort_points(const TileArena& arena, const Reading& at, const LaneReading& reading, int first_lane, int count,
                    const StampBend& bend, Buffers& buffers, std::vector<DeflectedChipSample>& out) const;
   bool place_in_ring(const TileArena& arena, float half_mm, float axial_mm, Shallow& point) const;
   static void make_room(Buffers& buffers);

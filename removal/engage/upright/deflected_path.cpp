@@ -38,7 +38,7 @@ class UprightDeflectedPath : public DeflectedPath {
   void start(std::size_t from, std::size_t count, const DeflectionTable& deflections) override;
   std::span<const DeflectedChipSample> read(std::size_t k) override { return reading_->read(*reader_, arena_, k); }
   std::span<const double> glance(std::size_t k, std::size_t count) override {
-    return reading_->glance(*reader_, arena_, k, count);
+    return reading_->glance(*reader_, arena_, k, count, cut_);
   }
   double glance_of(std::span<const DeflectedChipSample> chips) const override { return reading_->glance_of(chips); }
   void cut(std::size_t k, std::size_t count) override;
@@ -63,6 +63,7 @@ class UprightDeflectedPath : public DeflectedPath {
   std::vector<std::optional<CutTile>> tiles_{};  ///< by the arena's numbers
   BendMemory memory_{};
   double removed_mm3_ = 0;        ///< volume removed from tiles given back since the last commit
+  std::size_t cut_ = 0;           ///< stamps of the stretch that were cut
   double max_deflection_mm_ = 0;  ///< largest deflection of all stamps that were cut
   double max_axial_mm_ = 0;       ///< the same along the axis
   std::optional<StampDeflections> bends_{};
@@ -79,7 +80,7 @@ void UprightDeflectedPath::remember(std::size_t from, std::span<const float> row
 void UprightDeflectedPath::start(std::size_t from, std::size_t count, const DeflectionTable& deflections) {
   const EnvelopeGrid& envelope = run_.envelope;
   assert(from >= from_ + stamps_.size());
-  from_ = from;
+  from_ = from, cut_ = 0;
   stamps_ = run_.stamps.subspan(from, count);
   deflections_ = &deflections;
   if (count == 0) return;
@@ -143,6 +144,7 @@ void UprightDeflectedPath::cut_tile(std::size_t t, std::size_t k, const StampDef
 /// The last stamp of a tile first: where the tool moves ahead, it leaves nothing to those before it.
 void UprightDeflectedPath::cut(std::size_t k, std::size_t count) {
   list_group(k, count);
+  cut_ = k + count;
   tbb::parallel_for(std::size_t{0}, reached_.size(), [&](std::size_t i) {
     auto& group = tiles_[reached_[i]]->group;
     for (; !group.empty(); group.pop_back()) {
