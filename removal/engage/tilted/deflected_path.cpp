@@ -167,7 +167,7 @@ void Engager::cut(std::size_t k, std::size_t count) {
   for (std::size_t i = k; i < k + count; ++i)
     if (!m.memory.knows(static_cast<std::int32_t>(m.from + i)))
       m.memory.add(m.deflections->row(static_cast<std::ptrdiff_t>(i)));
-  for (std::size_t i = count; i-- > 0;) m.cut(k + i);
+  for (std::size_t i = 0; i < count; ++i) m.cut(k + i);
   m.cut_end = k + count;
 }
 
