@@ -96,6 +96,10 @@ void read_holder(TomlTable& table, Tool& tool) {
     tool.holder.push_back({row[0], row[1], row[2]});
 }
 
+bool has_typical_flutes(const Tool& tool) {
+  return tool.type == ToolType::ball || tool.type == ToolType::flat || tool.type == ToolType::bull;
+}
+
 /// Fills in what nobody gave and every tool has: typical values (docs/measured-parts.md). A rigid clamp is never true;
 /// a cutter has flutes along about three diameters, above which it is a shank.
 void take_typical_values(const TomlTable& table, Tool& tool) {
@@ -104,9 +108,8 @@ void take_typical_values(const TomlTable& table, Tool& tool) {
     tool.root_stiffness_N_per_mm = kRoot_N_per_mm;
     tool.typical.emplace_back("root_stiffness_N_per_um = 20");
   }
-  const bool milling = tool.type == ToolType::ball || tool.type == ToolType::flat || tool.type == ToolType::bull;
   const double flutes = kFluteDiameters * tool.diameter_mm;
-  if (!milling || table.has("flute_length_mm") || table.has("shank_diameter_mm") || tool.overhang_mm <= flutes) return;
+  if (!has_typical_flutes(tool) || tool.flute_length_mm || tool.overhang_mm <= flutes) return;
   tool.typical_flute_mm = flutes;
   tool.typical.push_back(fmt::format("flute_length_mm = {:.6g}", flutes));
 }
@@ -123,7 +126,7 @@ void read_lengths(TomlTable& table, Tool& tool) {
                    fmt::format("flute_length_mm is {}; at most the overhang, {}, was expected", *tool.flute_length_mm,
                                tool.overhang_mm),
                    "tool-shape");
-  if (table.has("shank_diameter_mm") && !table.has("flute_length_mm"))
+  if (table.has("shank_diameter_mm") && !table.has("flute_length_mm") && !has_typical_flutes(tool))
     table.warning_at("shank_diameter_mm",
                      "shank_diameter_mm has no effect: without flute_length_mm the whole overhang is fluted",
                      "tool-shape");

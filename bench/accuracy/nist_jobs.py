@@ -18,6 +18,7 @@ INCH = 25.4
 STICK_OUT_IN = {"short": {5: 0.375, 1: 0.375, 4: 0.5, 3: 0.75}, "long": {5: 1.375, 1: 1.375, 4: 1.5, 3: 1.75},
                 "op": {5: 0.4, 1: 0.4, 4: 0.52, 3: 0.78}}  # op: not told; other lengths than short ones: a clamping of their own
 DIAMETER_MM = {5: 3.175, 1: 2.362, 4: 6.35, 3: 12.7}
+SHANK_MM = {1: 3.175}  # mills of 3/32 inch have shanks of 1/8 inch
 TOP_MM, BOTTOM_MM = -0.6, -4.7  # between which a bore is measured
 # group: tool, lines of the program, middle (inches), features [(name, kind, x, y, nominal, arc)]
 GROUPS = {
@@ -132,6 +133,7 @@ def job(plate, group, row, values, overrides):
     bottom = CUT_THROUGH_MM if finishing else -8
     allowance = f"allowance_mm = {LEFT_MM[group]}  # of the pass before\n" if finishing else ""
     diameter = overrides.get("diameters", {}).get((tool, row["tool_length"]), DIAMETER_MM[tool])
+    shank = f"\nshank_diameter_mm = {SHANK_MM[tool]}" if tool in SHANK_MM else ""
     return f"""# Plate {plate} of the NIST test bed, {group}: made by bench/accuracy/nist_jobs.py.
 program = "plate.nc"
 machine = "../machine.toml"
@@ -142,7 +144,7 @@ type = "flat"
 diameter_mm = {diameter:.6g}
 flutes = 2
 helix_deg = 30
-overhang_mm = {stick_out:.3f}
+overhang_mm = {stick_out:.3f}{shank}
 youngs_modulus_GPa = 600
 runout_um = 5              # of a collet: one tooth finishes, its feed marks are those of a whole turn
 {overrides.get("tool", "")}

@@ -435,9 +435,17 @@ TEST(JobReader, RefusesUnknownAndWrongSimulationKeys) {
             "               ^");
 }
 
+TEST(JobReader, AShankStandsAboveTypicalFlutes) {
+  const auto [job, messages] = read(with("flutes = 2", "flutes = 2\nshank_diameter_mm = 8"));
+  EXPECT_EQ(messages, "");
+  EXPECT_EQ(job.tools.at(1).typical_flute_mm, 18);
+  EXPECT_EQ(job.tools.at(1).shank_diameter_mm, 8);
+}
+
 TEST(JobReader, WarnsOfAShankThatHasNoEffect) {
-  EXPECT_EQ(read(with("flutes = 2", "flutes = 2\nshank_diameter_mm = 6")).messages,
-            "job.toml:7:21: warning: shank_diameter_mm has no effect: without flute_length_mm the whole overhang is "
+  const std::string tapered = with("flutes = 2", "flutes = 2\ntaper_deg = 3\nshank_diameter_mm = 6");
+  EXPECT_EQ(read(replaced(tapered, "\"ball\"", "\"tapered_ball\"")).messages,
+            "job.toml:8:21: warning: shank_diameter_mm has no effect: without flute_length_mm the whole overhang is "
             "fluted [tool-shape]\n"
             "    shank_diameter_mm = 6\n"
             "                        ^\n");
