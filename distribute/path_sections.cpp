@@ -105,8 +105,12 @@ double sweep_pieces(const Stock& raw, const Job& job, const PathStretch& path, c
     const removal::ToolRun& run = path.run_of(piece);
     if (shrink_mm > 0 && run.kind != removal::RunKind::milling) continue;
     Stock scratch(raw);
-    removed_mm3 += sweep_run(scratch, job, run, path.stamps_of(piece),
-                             {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(path.begin_of(piece))});
+    removed_mm3 +=
+        removal::sweep(scratch, removal::shape_of(job.tools.at(run.tool)), path.stamps_of(piece),
+                       {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(path.begin_of(piece))});
+    if (shrink_mm > 0)
+      removed_mm3 += sweep_underside(scratch, job.tools.at(run.tool), path.stamps_of(piece), shrink_mm,
+                                     static_cast<std::int32_t>(path.begin_of(piece) + piece.count));
     StockPart part(scratch, raw, reach_of(job, path, piece));
     work.stamps += piece.count;
     work.voxels += part.voxels();

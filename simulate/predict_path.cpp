@@ -246,50 +246,38 @@ double nothing_mm3(const Job& job) { return std::pow(job.simulation.voxel_mm, 3)
 
 }  // namespace
 
-namespace {
-
-/// Sweeps the stamps whose tip ends at the underside once more, so low that the smaller cutter reaches it.
-double sweep_through(removal::Stock& stock, const removal::CutterShape& shape, std::span<const removal::Stamp> stamps,
-                     const removal::SweepOptions& options) {
+double sweep_underside(removal::Stock& stock, const machine::Tool& tool, std::span<const removal::Stamp> stamps,
+                       double allowance_mm, std::int32_t first_id) {
+  const removal::CutterShape shape = removal::shape_of(tool);
+  machine::Tool bottom;
+  bottom.type = machine::ToolType::flat;
+  bottom.diameter_mm = 2 * std::min(shape.bottom_length_mm(), shape.radius_mm - allowance_mm);
+  if (shape.general || bottom.diameter_mm < stock.voxel_mm()) return 0;
   const double underside_mm = stock.min_mm().z();
-  const auto ends_there = [&](const removal::Stamp& s) {
-    return s.pose.upright() && std::abs(s.pose.tip_mm.z() - underside_mm) < options.shrink_mm;
-  };
-  double removed_mm3 = 0;
-  std::vector<removal::Stamp> low;
-  for (std::size_t k = 0; k <= stamps.size(); ++k) {
-    if (k < stamps.size() && ends_there(stamps[k])) {
-      low.push_back(stamps[k]);
-      low.back().pose.tip_mm.z() = underside_mm - options.shrink_mm;
-      continue;
+  std::vector<removal::Stamp> through;
+  for (const removal::Stamp& s : stamps)
+    if (s.pose.upright() && std::abs(s.pose.tip_mm.z() - underside_mm) < allowance_mm) {
+      through.push_back(s);
+      through.back().pose.tip_mm.z() = underside_mm - stock.voxel_mm();
     }
-    if (low.empty()) continue;
-    const auto first = options.first_id + static_cast<std::int32_t>(k - low.size());
-    removed_mm3 += removal::sweep(stock, shape, low, {.shrink_mm = options.shrink_mm, .first_id = first});
-    low.clear();
-  }
-  return removed_mm3;
-}
-
-}  // namespace
-
-double sweep_run(removal::Stock& stock, const Job& job, const removal::ToolRun& run,
-                 std::span<const removal::Stamp> stamps, const removal::SweepOptions& options) {
-  const bool milling = run.kind == removal::RunKind::milling;
-  if (options.shrink_mm > 0 && !milling) return 0;
-  const removal::CutterShape shape = removal::shape_of(job.tools.at(run.tool));
-  const double removed_mm3 = removal::sweep(stock, shape, stamps, options);
-  return removed_mm3 + (options.shrink_mm > 0 ? sweep_through(stock, shape, stamps, options) : 0);
+  return through.empty() ? 0 : removal::sweep(stock, removal::shape_of(bottom), through, {.first_id = first_id});
 }
 
 double sweep_path(removal::Stock& stock, const Job& job, const removal::StampPath& path, double shrink_mm,
                   const std::string& what) {
   Stage stage(what, path.stamps.size());
   double removed_mm3 = 0;
-  for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool&, auto stamps) {
+  for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    if (shrink_mm > 0 && run.kind != removal::RunKind::milling) return;
     removed_mm3 +=
-        sweep_run(stock, job, run, stamps,
-                  {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(run.from), .stage = &stage});
+        removal::sweep(stock, removal::shape_of(tool), stamps,
+                       {.shrink_mm = shrink_mm, .first_id = static_cast<std::int32_t>(run.from), .stage = &stage});
+  });
+  auto next_id = static_cast<std::int32_t>(path.stamps.size());
+  for_each_run(job, path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
+    if (shrink_mm <= 0 || run.kind != removal::RunKind::milling) return;
+    removed_mm3 += sweep_underside(stock, tool, stamps, shrink_mm, next_id);
+    next_id += static_cast<std::int32_t>(run.count);
   });
   return_freed_memory();  // of tiles
   return removed_mm3;

@@ -79,16 +79,18 @@ Blank make_blank(const machine::Job& job, const SimulatedProgram& target, Diagno
 /// it. Throws InputError (stock missing, memory, nothing removed, sizes that differ by the factor of the inch).
 Target make_target(const machine::Job& job, const SimulatedProgram& target, Diagnostics& diagnostics);
 
-/// Sweeps the undeflected cutter of a run, or of a piece of it, through the stock; returns the volume removed, mm^3.
-/// With shrink_mm > 0 as the cut before left it: holes are left out, since an allowance lies on milled surface and they
-/// are made from solid, and a tip that ends at the underside of the stock goes through, since nothing is left there for
-/// an allowance to lie on.
-double sweep_run(removal::Stock& stock, const machine::Job& job, const removal::ToolRun& run,
-                 std::span<const removal::Stamp> stamps, const removal::SweepOptions& options);
-
-/// Sweeps a path, run by run. `what`: the name of this stage (base/stage.h).
+/// Sweeps the undeflected cutters of a path through the stock, each made smaller by shrink_mm along its normal; returns
+/// the volume removed, mm^3. With shrink_mm > 0 holes are left out: an allowance lies on milled surface, they are made
+/// from solid; and a tip that ends at the underside of the stock goes through. `what`: the name of this stage
+/// (base/stage.h).
 double sweep_path(removal::Stock& stock, const machine::Job& job, const removal::StampPath& path, double shrink_mm,
                   const std::string& what = "sweeping the path");
+
+/// Takes the flat bottom of a milling cutter through the underside of the stock where its tip ends there, less
+/// allowance_mm at the wall: the cut before left no floor. Returns the volume removed, mm^3. The stock may name no id
+/// from first_id on.
+double sweep_underside(removal::Stock& stock, const machine::Tool& tool, std::span<const removal::Stamp> stamps,
+                       double allowance_mm, std::int32_t first_id);
 
 /// Where the model holds (simulate/validity.h).
 struct Validity {
