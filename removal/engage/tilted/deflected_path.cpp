@@ -54,6 +54,14 @@ EnvelopeGrid with_patches(const EnvelopeGrid& envelope, double band_mm) {
   return out;
 }
 
+/// What go_back() brings back.
+struct Kept {
+  bool keeps = false;             ///< since keep(), in this stretch
+  std::vector<KeptTile> tiles{};  ///< the first `count` are in use
+  std::size_t count = 0;
+  std::vector<char> is_kept{};  ///< by tile of the arena
+};
+
 }  // namespace
 
 struct Engager::Impl {
@@ -74,10 +82,7 @@ struct Engager::Impl {
   std::size_t cut_end = 0;  ///< stamps of the stretch that were cut
   double removed_mm3 = 0;   ///< volume removed from tiles that were given back since the last commit
   std::optional<tbb::enumerable_thread_specific<DeflectedCarver>> carvers{};
-  bool keeps = false;            ///< since keep(), in this stretch
-  std::vector<KeptTile> kept{};  ///< the first kept_count are in use
-  std::size_t kept_count = 0;
-  std::vector<char> is_kept{};  ///< by tile of the arena
+  Kept kept{};
 
   Impl(const EngagedRun& run_, const ReadingRule& rule_)
       : envelope(with_patches(run_.envelope, run_.stock.band_mm())),
@@ -89,13 +94,13 @@ struct Engager::Impl {
   void keep_tiles(std::span<const std::int32_t> reached, const Carving& stamp, const StampDeflection& deflection) {
     for (const std::int32_t number : reached) {
       const auto t = static_cast<std::size_t>(number);
-      if (is_kept[t] || !is_due(tiles[t]->rows, stamp, deflection)) continue;
-      is_kept[t] = 1;
-      if (kept_count == kept.size())
-        kept.push_back({t, arena[t], *tiles[t]});
+      if (kept.is_kept[t] || !is_due(tiles[t]->rows, stamp, deflection)) continue;
+      kept.is_kept[t] = 1;
+      if (kept.count == kept.tiles.size())
+        kept.tiles.push_back({t, arena[t], *tiles[t]});
       else
-        kept[kept_count] = {t, arena[t], *tiles[t]};
-      ++kept_count;
+        kept.tiles[kept.count] = {t, arena[t], *tiles[t]};
+      ++kept.count;
     }
   }
   void leave(std::span<const std::size_t> numbers) {
@@ -115,7 +120,7 @@ void Engager::start(std::size_t from, std::size_t count, const DeflectionTable& 
   m.from = from, m.cut_end = 0;
   m.stamps = m.run.stamps.subspan(from, count);
   m.deflections = &deflections;
-  m.keeps = false;
+  m.kept.keeps = false;
   if (count == 0) return;
   if (!m.lanes) {
     m.lanes.emplace(m.envelope, deflections.node_height_mm, m.run.stock.voxel_mm(), m.run.stock.band_mm());
@@ -154,7 +159,7 @@ void Engager::Impl::cut(std::size_t k) {
                       run.first_id + static_cast<std::int32_t>(from + k),
                       way[k]};
   const auto reached = arena.reached_by(k);
-  if (keeps) keep_tiles(reached, stamp, deflection);
+  if (kept.keeps) keep_tiles(reached, stamp, deflection);
   tbb::parallel_for(std::size_t{0}, reached.size(), [&](std::size_t i) {
     const auto t = static_cast<std::size_t>(reached[i]);
     CutTile& tile = *tiles[t];
@@ -173,16 +178,16 @@ void Engager::cut(std::size_t k, std::size_t count) {
 
 void Engager::keep() {
   Impl& m = *impl_;
-  m.keeps = true;
-  m.kept_count = 0;
-  m.is_kept.assign(m.arena.size(), 0);
+  m.kept.keeps = true;
+  m.kept.count = 0;
+  m.kept.is_kept.assign(m.arena.size(), 0);
 }
 
 void Engager::go_back() {
   Impl& m = *impl_;
-  for (const KeptTile& kept : std::span(m.kept).first(m.kept_count)) {
-    m.arena[kept.number] = kept.tile;
-    *m.tiles[kept.number] = kept.cut;
+  for (const KeptTile& tile : std::span(m.kept.tiles).first(m.kept.count)) {
+    m.arena[tile.number] = tile.tile;
+    *m.tiles[tile.number] = tile.cut;
   }
   keep();
 }
