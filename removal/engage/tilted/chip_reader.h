@@ -70,7 +70,7 @@ class ChipReader {
     /// Chip that a point may take beyond its motion bound, mm: the stamp before had another deflection when it left the
     /// surface there.
     double reach_mm, axial_reach_mm;
-    bool sharp;  ///< the motion bounds the chip sharply: the stamps right before it have yet to cut
+    bool sharp;  ///< the motion bounds the chip sharply: the cutter is rigid, or the stamps before have yet to cut
   };
   Reading reading_of(std::size_t k, bool sharp = false) const;
 
