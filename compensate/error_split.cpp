@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "compensate/row_form.h"
-#include "removal/form_error.h"
 
 namespace camber::compensate {
 namespace {
@@ -70,13 +68,14 @@ std::vector<double> centring_mm(const ShiftPath& path, std::span<const Observati
   rest.set_shifts(std::vector<Vec3>(path.points().size(), Vec3::Zero()));
   std::vector<Observation> asked(observations.begin(), observations.end());
   std::vector<double> area(left_mm.size()), added(left_mm.size(), 0.0), best = added, sum = left_mm;
-  std::vector<std::pair<double, double>> depths(left_mm.size());
   double whole = 0, least = std::numeric_limits<double>::infinity(), deepest = least;
   for (std::size_t i = 0; i < area.size(); ++i) whole += area[i] = observations[i].area_mm2;
   for (int k = 0; k <= kCentrings; ++k) {
     const double p95 = removal::error_figures(sum, area).p95;
-    for (std::size_t i = 0; i < sum.size(); ++i) depths[i] = {-sum[i], area[i]};
-    const double depth = depth_p999(depths, whole);
+    std::vector<removal::ValueOfArea> depths;
+    depths.reserve(sum.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) depths.push_back({-sum[i], area[i]});
+    const double depth = depth_p999(std::move(depths), whole);
     if (k == 0) deepest = depth;
     if (p95 < least && depth <= deepest) {
       least = p95;
@@ -84,7 +83,7 @@ std::vector<double> centring_mm(const ShiftPath& path, std::span<const Observati
     }
     if (p95 <= 0) break;
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      const double x = std::pow(sum[i] / p95, 4);
+      const double ratio = sum[i] / p95, x = ratio * ratio * ratio * ratio;
       asked[i].error_mm = left_mm[i];
       asked[i].weight = 1 + kNearWeight * std::min(x, 1 / x);
     }
@@ -260,13 +259,12 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
   return out;
 }
 
-double depth_p999(std::vector<std::pair<double, double>> depth_and_area, double area_mm2) {
+double depth_p999(std::vector<removal::ValueOfArea> depths, double area_mm2) {
   constexpr double kSpared = 0.001;
-  std::sort(depth_and_area.begin(), depth_and_area.end(), std::greater<>());
-  double spared = kSpared * area_mm2;
-  for (const auto& [depth, area] : depth_and_area)
-    if ((spared -= area) < 0) return std::max(0.0, depth);
-  return 0;
+  double listed_mm2 = 0;
+  for (const removal::ValueOfArea& d : depths) listed_mm2 += d.area_mm2;
+  const double below_mm2 = listed_mm2 - kSpared * area_mm2;
+  return below_mm2 > 0 ? std::max(0.0, removal::value_at_area(std::move(depths), below_mm2)) : 0;
 }
 
 double default_depth_limit_um(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
@@ -275,11 +273,11 @@ double default_depth_limit_um(const ShiftPath& path, const Observed& observed, c
   FitShiftOptions least_squares = options;
   least_squares.centred = false;
   const Fits f = fits_of(path, observed, least_squares);
-  std::vector<std::pair<double, double>> depths;
+  std::vector<removal::ValueOfArea> depths;
   double area = 0;
   for (std::size_t i = 0; i < f.all.size(); ++i) {
     const double left_mm = f.at_one_place[i] + f.all[i].error_mm - f.asked[i].error_mm;
-    depths.emplace_back(-1000 * left_mm, f.all[i].area_mm2);
+    depths.push_back({-1000 * left_mm, f.all[i].area_mm2});
     area += f.all[i].area_mm2;
   }
   return std::max(tolerance_um, kRoom * depth_p999(std::move(depths), area));

@@ -2,12 +2,12 @@
 // Error decomposition: which part of the error a shift of the path can correct, which part none can and why, and which
 // part a limit prevents.
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "compensate/attribution.h"
 #include "compensate/fit_shift.h"
 #include "compensate/shift_path.h"
+#include "removal/form_error.h"
 
 namespace camber::compensate {
 
@@ -67,7 +67,7 @@ ErrorSplit split_error(const ShiftPath& path, const Observed& observed, const Fi
 double default_depth_limit_um(const ShiftPath& path, const Observed& observed, const FitShiftOptions& options,
                               double tolerance_um);
 
-/// Depth that no more than a thousandth of `area_mm2` exceeds. Pairs of depth and area.
-double depth_p999(std::vector<std::pair<double, double>> depth_and_area, double area_mm2);
+/// Depth that no more than a thousandth of `area_mm2` exceeds.
+double depth_p999(std::vector<removal::ValueOfArea> depths, double area_mm2);
 
 }  // namespace camber::compensate

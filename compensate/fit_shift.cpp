@@ -1,9 +1,12 @@
 #include "compensate/fit_shift.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -15,60 +18,72 @@ using Eigen::Matrix3d;
 /// Directions with less than this fraction of the best told one's observations are held at rest.
 constexpr double kDeterminedFraction = 0.05;
 
-/// Normal equations of one path: diagonal[i] s_i + upper[i] s_(i+1) + upper[i-1]^T s_(i-1) = right[i].
-struct System {
-  std::vector<Matrix3d> diagonal, upper;
-  std::vector<Vec3> right;
+constexpr double kHold = 8;  // weight of a bound that would be exceeded beside the observation's own: see Bounds
+
+/// What the least squares take for an observation's error and area.
+struct Asked {
+  double error_mm = 0, area_mm2 = 0;
+};
+Asked asked_of(const Observation& o, double pull_mm) {
+  if (pull_mm == 0) return {o.error_mm, o.area_mm2};
+  const double bound_mm = pull_mm > 0 ? o.bound_mm : -o.bound_mm;
+  return {(o.error_mm + kHold * (o.error_mm + o.form_mm - bound_mm + pull_mm)) / (1 + kHold), o.area_mm2 * (1 + kHold)};
+}
+
+/// Area of the observations of a point of the path, and the same times their weights.
+struct AreaSums {
+  double weighted = 0, area = 0;
 };
 
-void add_observation(System& s, const ShiftPath& path, const Observation& o) {
+/// Normal equations of one path: diagonal[i] s_i + upper[i] s_(i+1) + upper[i-1]^T s_(i-1) = right[i].
+struct System {
+  explicit System(std::size_t points)
+      : diagonal(points, Matrix3d::Zero()), upper(points, Matrix3d::Zero()), right(points, Vec3::Zero()), own(points) {}
+  std::vector<Matrix3d> diagonal, upper;
+  std::vector<Vec3> right;
+  std::vector<AreaSums> own;  ///< one per point
+};
+
+void add_observation(System& s, const ShiftPath& path, const Observation& o, const Asked& asked) {
   const std::size_t i = o.place.lower;
   const double v = o.place.upper_fraction, u = 1 - v;
-  const double a = o.weight * o.area_mm2;
+  const double a = o.weight * asked.area_mm2;
   const Matrix3d nn = a * o.normal * o.normal.transpose();
   const auto& points = path.points();
   const Vec3 old = u * points[i].shift_mm + v * points[i + 1].shift_mm;
-  const Vec3 pull = a * (o.normal.dot(old) - o.error_mm / o.gain) * o.normal;
+  const Vec3 pull = a * (o.normal.dot(old) - asked.error_mm / o.gain) * o.normal;
   s.diagonal[i] += u * u * nn;
   s.diagonal[i + 1] += v * v * nn;
   s.upper[i] += u * v * nn;
   s.right[i] += u * pull;
   s.right[i + 1] += v * pull;
+  s.own[i] = {s.own[i].weighted + u * a, s.own[i].area + u * asked.area_mm2};
+  s.own[i + 1] = {s.own[i + 1].weighted + v * a, s.own[i + 1].area + v * asked.area_mm2};
 }
 
 /// Mean weight of the observations about each point of a path, at least one: smoothing keeps its length where a few
 /// of them weigh a thousand times as much as the others, else those few would make a path of their scatter.
-std::vector<double> weight_about(const ShiftPath& path, std::span<const Observation> observations) {
+std::vector<double> weight_about(const ShiftPath& path, const std::vector<AreaSums>& own) {
   constexpr double kAbout_mm = 0.5;
-  struct Sums {
-    double weighted = 0, area = 0;
-  };
   const auto& points = path.points();
-  std::vector<Sums> own(points.size());
-  for (const Observation& o : observations)
-    for (const auto& [at, fraction] :
-         {std::pair{o.place.lower, 1 - o.place.upper_fraction}, std::pair{o.place.lower + 1, o.place.upper_fraction}}) {
-      own[at].weighted += fraction * o.area_mm2 * o.weight;
-      own[at].area += fraction * o.area_mm2;
-    }
-  std::vector<Sums> about = own;
+  std::vector<AreaSums> about = own;
   for (const ShiftChain& c : path.chains()) {
     const std::size_t end = c.from + c.count;
     const auto fade = [&](std::size_t i) {
       return std::exp(-(points[i].along_mm - points[i - 1].along_mm) / kAbout_mm);
     };
-    const auto carry = [&](Sums& carried, std::size_t from, std::size_t to, double keep) {
+    const auto carry = [&](AreaSums& carried, std::size_t from, std::size_t to, double keep) {
       carried = {keep * (carried.weighted + own[from].weighted), keep * (carried.area + own[from].area)};
       about[to] = {about[to].weighted + carried.weighted, about[to].area + carried.area};
     };
-    Sums carried;
+    AreaSums carried;
     for (std::size_t i = c.from + 1; i < end; ++i) carry(carried, i - 1, i, fade(i));
     carried = {};
     for (std::size_t i = end - 1; i > c.from; --i) carry(carried, i, i - 1, fade(i));
   }
   std::vector<double> out;
   out.reserve(about.size());
-  for (const Sums& a : about) out.push_back(a.area > 0 ? std::max(1.0, a.weighted / a.area) : 1.0);
+  for (const AreaSums& a : about) out.push_back(a.area > 0 ? std::max(1.0, a.weighted / a.area) : 1.0);
   return out;
 }
 
@@ -223,22 +238,21 @@ std::vector<Vec3> solve(const System& s, const ShiftPath& path, std::span<const 
   return x;
 }
 
-/// Shifts that minimize the sum; they start at `x`, or where it is empty at none.
+/// Shifts that minimize the sum; they start at `x`, or where it is empty at none. `pull_mm`: of Bounds, or empty.
 std::vector<Vec3> fitted(const ShiftPath& path, std::span<const Observation> observations,
-                         const FitShiftOptions& options, std::vector<Vec3> x) {
-  const auto& points = path.points();
-  System s{std::vector<Matrix3d>(points.size(), Matrix3d::Zero()),
-           std::vector<Matrix3d>(points.size(), Matrix3d::Zero()), std::vector<Vec3>(points.size(), Vec3::Zero())};
+                         std::span<const double> pull_mm, const FitShiftOptions& options, std::vector<Vec3> x) {
+  System s(path.points().size());
   double area = 0, length = 0;
-  for (const Observation& o : observations) {
-    add_observation(s, path, o);
-    area += o.area_mm2;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Asked asked = asked_of(observations[i], pull_mm.empty() ? 0.0 : pull_mm[i]);
+    add_observation(s, path, observations[i], asked);
+    area += asked.area_mm2;
   }
-  for (const ShiftChain& c : path.chains()) length += points[c.from + c.count - 1].along_mm;
+  for (const ShiftChain& c : path.chains()) length += path.points()[c.from + c.count - 1].along_mm;
   const double rho = std::max(area, 1e-9) / std::max(length, 1e-9);
   const double mu = rho * options.smoothing_mm * options.smoothing_mm;
   const double kappa = mu / (options.decay_mm * options.decay_mm);
-  const std::vector<double> weight = weight_about(path, observations);
+  const std::vector<double> weight = weight_about(path, s.own);
   for (const ShiftChain& c : path.chains()) {
     add_rest(s, c);
     add_stiffness(s, path, c, mu, kappa, weight, options.stiffness);
@@ -260,38 +274,36 @@ class Bounds {
 
   /// Learns from a fit. Returns whether another one is needed.
   bool learn(const ShiftPath& path, const std::vector<Vec3>& shifts) {
-    bool over = false;
-    for (std::size_t i = 0; i < asked_.size(); ++i) {
-      const Observation& o = asked_[i];
-      if (std::isinf(o.bound_mm)) continue;
-      const double v = o.place.upper_fraction, u = 1 - v;
-      const Vec3 change = u * (shifts[o.place.lower] - path.points()[o.place.lower].shift_mm) +
-                          v * (shifts[o.place.lower + 1] - path.points()[o.place.lower + 1].shift_mm);
-      const double left_mm = o.error_mm + o.form_mm + o.gain * o.normal.dot(change);
-      // The side that holds it already, or else the one that it is on.
-      const double side = pull_mm_[i] != 0 ? (pull_mm_[i] > 0 ? 1.0 : -1.0) : (left_mm > 0 ? 1.0 : -1.0);
-      const double beyond_mm = side * left_mm - o.bound_mm;
-      over = over || beyond_mm > kClose_mm;
-      const bool held = pull_mm_[i] != 0;
-      pull_mm_[i] = side * (held ? std::max(0.0, std::abs(pull_mm_[i]) + beyond_mm) : beyond_mm > 0 ? kNone_mm : 0.0);
-    }
+    std::vector<Vec3> changes;
+    changes.reserve(shifts.size());
+    for (std::size_t i = 0; i < shifts.size(); ++i) changes.push_back(shifts[i] - path.points()[i].shift_mm);
+    std::atomic<bool> over = false;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, asked_.size()), [&](const auto& range) {
+      bool any = false;
+      for (std::size_t i = range.begin(); i < range.end(); ++i) any = learn(i, changes) || any;
+      if (any) over = true;
+    });
     return over;
   }
 
-  std::vector<Observation> held() const {
-    std::vector<Observation> out(asked_.begin(), asked_.end());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      if (pull_mm_[i] == 0) continue;
-      Observation& o = out[i];
-      const double bound_mm = pull_mm_[i] > 0 ? o.bound_mm : -o.bound_mm;
-      o.error_mm = (o.error_mm + kHold * (o.error_mm + o.form_mm - bound_mm + pull_mm_[i])) / (1 + kHold);
-      o.area_mm2 *= 1 + kHold;
-    }
-    return out;
-  }
+  /// One per observation, zero where none is held: for asked_of.
+  const std::vector<double>& pull_mm() const { return pull_mm_; }
 
  private:
-  static constexpr double kHold = 8;
+  bool learn(std::size_t i, const std::vector<Vec3>& changes) {
+    const Observation& o = asked_[i];
+    if (std::isinf(o.bound_mm)) return false;
+    const double v = o.place.upper_fraction, u = 1 - v;
+    const Vec3 change = u * changes[o.place.lower] + v * changes[o.place.lower + 1];
+    const double left_mm = o.error_mm + o.form_mm + o.gain * o.normal.dot(change);
+    // The side that holds it already, or else the one that it is on.
+    const double side = pull_mm_[i] != 0 ? (pull_mm_[i] > 0 ? 1.0 : -1.0) : (left_mm > 0 ? 1.0 : -1.0);
+    const double beyond_mm = side * left_mm - o.bound_mm;
+    const bool held = pull_mm_[i] != 0;
+    pull_mm_[i] = side * (held ? std::max(0.0, std::abs(pull_mm_[i]) + beyond_mm) : beyond_mm > 0 ? kNone_mm : 0.0);
+    return beyond_mm > kClose_mm;
+  }
+
   static constexpr double kClose_mm = 0.0001;
   static constexpr double kNone_mm = 1e-12;  // pull of a bound that is held for the first time
   std::span<const Observation> asked_;
@@ -302,11 +314,11 @@ class Bounds {
 
 std::size_t fit_shift(ShiftPath& path, std::span<const Observation> observations, const FitShiftOptions& options) {
   constexpr int kFits = 12;  // within bounds
-  std::vector<Vec3> shifts = fitted(path, observations, options, {});
+  std::vector<Vec3> shifts = fitted(path, observations, {}, options, {});
   if (options.bounded) {
     Bounds bounds(observations);
     for (int i = 0; i < kFits && bounds.learn(path, shifts); ++i)
-      shifts = fitted(path, bounds.held(), options, std::move(shifts));
+      shifts = fitted(path, observations, bounds.pull_mm(), options, std::move(shifts));
   }
   path.set_shifts(shifts);
   return path.cut_to(options.max_shift_mm);

@@ -27,13 +27,13 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, const Observed
                bool compensated) {
   Depth out;
   double over = 0, area = 0;
-  std::vector<std::pair<double, double>> depths;
+  std::vector<removal::ValueOfArea> depths;
   for (std::size_t i = 0; i < surface.size(); ++i) {
     area += surface[i].area_mm2;
     if (observed.compensated[i] != compensated || !surface[i].valid) continue;
     const double error_mm = observed.points[i].error_mm;
     add_point(out, surface[i], error_mm, tolerance_um, over);
-    depths.emplace_back(-1000 * error_mm, surface[i].area_mm2);
+    depths.push_back({-1000 * error_mm, surface[i].area_mm2});
   }
   out.gouge_depth_p999_um = depth_p999(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
@@ -44,12 +44,12 @@ Depth depth_of(const std::vector<removal::SurfacePoint>& surface, machine::Refer
                double tolerance_um) {
   Depth out;
   double over = 0, area = others_mm2;
-  std::vector<std::pair<double, double>> depths;
+  std::vector<removal::ValueOfArea> depths;
   for (const removal::SurfacePoint& p : surface) {
     area += p.area_mm2;
     if (!p.valid) continue;
     add_point(out, p, judged_mm(p, reference), tolerance_um, over);
-    depths.emplace_back(-1000 * judged_mm(p, reference), p.area_mm2);
+    depths.push_back({-1000 * judged_mm(p, reference), p.area_mm2});
   }
   out.gouge_depth_p999_um = depth_p999(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
@@ -62,13 +62,13 @@ Depth depth_without_bending(const machine::Job& job, const simulate::Target& tar
   simulate::sweep_path(stock, job, emitted.path, 0);
   Depth out;
   double over = 0, area = 0;
-  std::vector<std::pair<double, double>> depths;
+  std::vector<removal::ValueOfArea> depths;
   auto surface = removal::compare_surfaces(stock, target.surface);
   target.holes.drop_from(surface);
   for (const auto& p : surface) {
     area += p.area_mm2;
     add_point(out, p, p.error_mm, tolerance_um, over);
-    depths.emplace_back(-1000 * p.error_mm, p.area_mm2);
+    depths.push_back({-1000 * p.error_mm, p.area_mm2});
   }
   out.gouge_depth_p999_um = depth_p999(std::move(depths), area);
   out.over_fraction = area > 0 ? over / area : 0;
@@ -83,7 +83,7 @@ WorsePlaces worse_places(const std::vector<removal::SurfacePoint>& before,
                          const std::vector<removal::SurfacePoint>& after, const Observed& observed,
                          const machine::CompensationSettings& asked) {
   WorsePlaces out;
-  std::vector<std::pair<double, double>> excess_and_area;
+  std::vector<removal::ValueOfArea> excesses;
   double area = 0, worse_area = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
     if (!observed.judged(i) || !before[i].valid || !after[i].valid) continue;
@@ -95,11 +95,11 @@ WorsePlaces worse_places(const std::vector<removal::SurfacePoint>& before,
     ++out.points;
     worse_area += before[i].area_mm2;
     out.max_um = std::max(out.max_um, 1000 * (now_mm - std::abs(given_mm)));
-    excess_and_area.emplace_back(1000 * excess_mm, before[i].area_mm2);
+    excesses.push_back({1000 * excess_mm, before[i].area_mm2});
   }
   if (area <= 0) return out;
   out.area_fraction = worse_area / area;
-  out.p999_um = depth_p999(std::move(excess_and_area), area);
+  out.p999_um = depth_p999(std::move(excesses), area);
   return out;
 }
 

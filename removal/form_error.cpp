@@ -18,12 +18,11 @@ struct Ranked {
   bool operator<(const Ranked& o) const { return value < o.value || (value == o.value && point < o.point); }
 };
 
-/// By what `value_of` makes of the errors, equal ones in the order of the points.
-template <class ValueOf>
-std::vector<Ranked> ranked(const std::vector<double>& error, ValueOf value_of) {
+/// Equal ones in the order of the points.
+std::vector<Ranked> ranked(const std::vector<double>& error) {
   std::vector<Ranked> out;
   out.reserve(error.size());
-  for (std::size_t i = 0; i < error.size(); ++i) out.push_back({value_of(error[i]), i});
+  for (std::size_t i = 0; i < error.size(); ++i) out.push_back({error[i], i});
   tbb::parallel_sort(out.begin(), out.end());
   return out;
 }
@@ -36,6 +35,26 @@ double round_width(double least) {
 }
 
 }  // namespace
+
+double value_at_area(std::vector<ValueOfArea> points, double area_mm2) {
+  constexpr double kRounding = 1e-11;
+  if (points.empty()) return 0;
+  const double wanted = area_mm2 * (1 - kRounding);
+  double below = 0;
+  auto from = points.begin(), to = points.end();
+  while (to - from > 1) {
+    const auto middle = from + (to - from) / 2;
+    std::nth_element(from, middle, to, [](const auto& a, const auto& b) { return a.value < b.value; });
+    const double lower = std::accumulate(from, middle, 0.0, [](double sum, const auto& p) { return sum + p.area_mm2; });
+    if (below + lower >= wanted) {
+      to = middle;
+    } else {
+      below += lower;
+      from = middle;
+    }
+  }
+  return from->value;
+}
 
 ErrorFigures error_figures(const std::vector<double>& error, const std::vector<double>& area) {
   ErrorFigures f;
@@ -50,19 +69,17 @@ ErrorFigures error_figures(const std::vector<double>& error, const std::vector<d
   }
   f.mean = sum / f.area_mm2;
   f.rms = std::sqrt(squares / f.area_mm2);
-  double below = 0;
-  for (const auto& [size, i] : ranked(error, [](double e) { return std::abs(e); })) {
-    below += area[i];
-    f.p95 = size;
-    if (below >= 0.95 * f.area_mm2) break;
-  }
+  std::vector<ValueOfArea> sizes;
+  sizes.reserve(error.size());
+  for (std::size_t i = 0; i < error.size(); ++i) sizes.push_back({std::abs(error[i]), area[i]});
+  f.p95 = value_at_area(std::move(sizes), 0.95 * f.area_mm2);
   return f;
 }
 
 ErrorSpread error_spread(const std::vector<double>& error, const std::vector<double>& area) {
   ErrorSpread out;
   if (error.empty()) return out;
-  const std::vector<Ranked> order = ranked(error, [](double e) { return e; });
+  const std::vector<Ranked> order = ranked(error);
   const double whole = std::accumulate(area.begin(), area.end(), 0.0);
   double below = 0;
   std::size_t next = 0;

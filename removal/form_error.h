@@ -102,6 +102,14 @@ std::vector<SurfacePoint> compare_surfaces(const Stock& machined, const Stock& t
 std::vector<std::vector<SurfacePoint>> surface_points(const Stock& target, const CutterPlaces& places,
                                                       const Stock* solid = nullptr, double* unseen_mm2 = nullptr);
 
+/// A value and the area that it stands for.
+struct ValueOfArea {
+  double value = 0, area_mm2 = 0;
+};
+/// Returns the least value that `area_mm2` of the points do not exceed, the greatest where all of them are less; 0
+/// without points. Sums of areas that differ by no more than rounding count as equal. Takes linear time.
+double value_at_area(std::vector<ValueOfArea> points, double area_mm2);
+
 /// Area-weighted figures of an error, in the unit of the values.
 struct ErrorFigures {
   double min = 0, max = 0, mean = 0, rms = 0;
