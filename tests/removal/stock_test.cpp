@@ -1,5 +1,6 @@
 #include "removal/stock.h"
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 
@@ -184,6 +185,26 @@ TEST(ErrorFigures, AreWeightedByArea) {
   EXPECT_DOUBLE_EQ(f.rms, std::sqrt((1 + 9 + 8) / 4.0));
   EXPECT_DOUBLE_EQ(f.p95, 3);
   EXPECT_DOUBLE_EQ(f.min, -3);
+}
+
+TEST(ErrorFigures, AnAreaHasTheValueThatASortedListHasThere) {
+  std::vector<ValueOfArea> points;
+  for (int i = 0; i < 500; ++i) points.push_back({static_cast<double>((i * 37) % 101), 0.01 * (1 + i % 7)});
+  std::vector<ValueOfArea> sorted = points;
+  std::ranges::stable_sort(sorted, {}, &ValueOfArea::value);
+  double whole = 0;
+  for (const ValueOfArea& p : points) whole += p.area_mm2;
+  for (const double fraction : {0.0, 0.003, 0.31, 0.5, 0.95, 0.999, 1.0}) {
+    double below = 0;
+    std::size_t k = 0;
+    while (k + 1 < sorted.size() && below + sorted[k].area_mm2 < fraction * whole * (1 - 1e-11))
+      below += sorted[k++].area_mm2;
+    EXPECT_EQ(value_at_area(points, fraction * whole), sorted[k].value) << fraction;
+  }
+  EXPECT_EQ(value_at_area(points, 2 * whole), 100);
+  EXPECT_EQ(value_at_area({}, 1), 0);
+  const std::vector<ValueOfArea> thirds{{3, 0.1}, {1, 0.1}, {2, 0.1}};
+  EXPECT_EQ(value_at_area(thirds, 0.1 + 0.1), 2) << "0.1 of 0.30000000000000004 and 0.2 of it";
 }
 
 TEST(ErrorSpread, GivesPercentilesAndAHistogramByArea) {

@@ -2,6 +2,7 @@
 // the grid lies.
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -43,7 +44,9 @@ std::vector<SurfacePoint> step_points(double voxel_mm, bool to_the_edges, double
 }
 
 TEST(SurfacePoints, AWallAndAFloorAreCoveredAlikeOnEveryGrid) {
-  for (const double voxel : {0.15, 0.13, 0.1, 0.087, 0.0713}) {
+  double wall_sum = 0, floor_sum = 0;
+  const std::vector<double> voxels{0.15, 0.13, 0.1, 0.087, 0.0713};
+  for (const double voxel : voxels) {
     Piece wall, floor;
     for (const SurfacePoint& p : step_points(voxel, true)) {
       EXPECT_NEAR(p.normal.cwiseAbs().maxCoeff(), 1, 1e-3) << "no normal leans between wall and floor";
@@ -56,7 +59,12 @@ TEST(SurfacePoints, AWallAndAFloorAreCoveredAlikeOnEveryGrid) {
     EXPECT_NEAR(wall.mean_mm / wall.area_mm2, -(kFace_mm + high / 2), 0.01) << voxel;
     EXPECT_NEAR(floor.area_mm2 / (length * wide), 1, 0.02) << voxel;
     EXPECT_NEAR(floor.mean_mm / floor.area_mm2, -(kEdge_mm + wide / 2), 0.01) << voxel;
+    wall_sum += wall.area_mm2 / (length * high);
+    floor_sum += floor.area_mm2 / (length * wide);
   }
+  const auto grids = static_cast<double>(voxels.size());
+  EXPECT_NEAR(wall_sum / grids, 1, 0.005);
+  EXPECT_NEAR(floor_sum / grids, 1, 0.005);
 }
 
 TEST(SurfacePoints, AStepAcrossTheGridIsCoveredAlikeToo) {
