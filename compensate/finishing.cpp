@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -31,26 +32,36 @@ std::vector<Operation> operations_of(const SimulatedProgram& program, std::vecto
   return out;
 }
 
-void distribute_surface(const SimulatedProgram& program, const std::vector<removal::SurfacePoint>& surface,
-                        const std::vector<std::size_t>& of_move, std::vector<Operation>& operations) {
-  double area = 0;
-  for (const auto& p : surface) {
-    area += p.area_mm2;
-    if (p.machined_stamp < 0 || static_cast<std::size_t>(p.machined_stamp) >= program.path.stamps.size()) continue;
-    const auto move = program.path.stamps[static_cast<std::size_t>(p.machined_stamp)].move;
-    if (program.selected[move]) operations[of_move[move]].surface_fraction += p.area_mm2;
+/// Area of a surface that each move made.
+struct MadeArea {
+  std::vector<double> of_move_mm2;
+  double whole_mm2 = 0;  ///< zero: there is no surface
+};
+
+/// `stamp_of`: index into `stamps` (of the moves) that made a point; negative: none.
+MadeArea made_by(std::span<const removal::SurfacePoint> surface, std::size_t moves, const auto& stamps, auto stamp_of) {
+  MadeArea out{std::vector<double>(moves, 0.0), 0};
+  for (const removal::SurfacePoint& p : surface) {
+    out.whole_mm2 += p.area_mm2;
+    const std::int32_t stamp = stamp_of(p);
+    if (stamp >= 0 && static_cast<std::size_t>(stamp) < stamps.size())
+      out.of_move_mm2[stamps[static_cast<std::size_t>(stamp)].move] += p.area_mm2;
   }
-  for (Operation& o : operations) o.surface_fraction = area > 0 ? o.surface_fraction / area : 0;
+  return out;
 }
 
-}  // namespace
+void distribute_surface(const SimulatedProgram& program, const MadeArea& made, const std::vector<std::size_t>& of_move,
+                        std::vector<Operation>& operations) {
+  if (made.whole_mm2 <= 0) return;
+  for (std::size_t m = 0; m < of_move.size(); ++m)
+    if (program.selected[m]) operations[of_move[m]].surface_fraction += made.of_move_mm2[m] / made.whole_mm2;
+}
 
-Finishing find_finishing(const machine::Job& job, const SimulatedProgram& program,
-                         const std::vector<removal::SurfacePoint>& surface) {
+Finishing find_finishing(const machine::Job& job, const SimulatedProgram& program, const MadeArea& made) {
   Finishing out;
   std::vector<std::size_t> of_move;
   out.operations = operations_of(program, of_move);
-  distribute_surface(program, surface, of_move, out.operations);
+  distribute_surface(program, made, of_move, out.operations);
   const auto& wanted = job.compensation.operations;
   out.moves = removal::selected_moves(program.moves_in_part(),
                                       motion::as_lines(wanted, program.text(), program.moves_in_part()));
@@ -58,10 +69,34 @@ Finishing find_finishing(const machine::Job& job, const SimulatedProgram& progra
     out.moves[m] = out.moves[m] && program.selected[m];
     if (!out.moves[m]) continue;
     Operation& operation = out.operations[of_move[m]];
-    if (!wanted.given() && !surface.empty()) out.moves[m] = operation.surface_fraction >= kFinishingFraction;
+    if (!wanted.given() && made.whole_mm2 > 0) out.moves[m] = operation.surface_fraction >= kFinishingFraction;
     if (out.moves[m]) ++operation.compensated_moves;
   }
   return out;
+}
+
+}  // namespace
+
+Finishing find_finishing(const machine::Job& job, const SimulatedProgram& program,
+                         const std::vector<removal::SurfacePoint>& surface) {
+  return find_finishing(job, program,
+                        made_by(surface, program.moves_in_part().moves.size(), program.path.stamps,
+                                [](const removal::SurfacePoint& p) { return p.machined_stamp; }));
+}
+
+Finishing expected_finishing(const machine::Job& job, const SimulatedProgram& program, const simulate::Target& target) {
+  return find_finishing(job, program,
+                        made_by(target.map->points(), program.moves_in_part().moves.size(), target.stamps,
+                                [](const removal::SurfacePoint& p) { return p.target_stamp; }));
+}
+
+std::size_t runs_before(const SimulatedProgram& program, const std::vector<bool>& compensated) {
+  const auto& runs = program.path.runs;
+  const auto first = std::ranges::find_if(runs, [&](const removal::ToolRun& run) {
+    return std::ranges::any_of(std::span(program.path.stamps).subspan(run.from, run.count),
+                               [&](const removal::Stamp& s) { return compensated[s.move]; });
+  });
+  return static_cast<std::size_t>(first - runs.begin());
 }
 
 std::vector<LineRole> line_roles(const SimulatedProgram& program, const std::vector<bool>& compensated) {

@@ -34,6 +34,12 @@ inline constexpr double kFinishingFraction = 0.05;
 /// other, without a move between them, are one heading.
 Finishing find_finishing(const machine::Job& job, const simulate::SimulatedProgram& program,
                          const std::vector<removal::SurfacePoint>& surface);
+/// The same before the program is cut, by the surface that its moves would make without deflection. `target`: swept by
+/// the program itself.
+Finishing expected_finishing(const machine::Job& job, const simulate::SimulatedProgram& program,
+                             const simulate::Target& target);
+/// Number of runs of the program's path before the first one that has a stamp on a compensated move.
+std::size_t runs_before(const simulate::SimulatedProgram& program, const std::vector<bool>& compensated);
 
 /// Role of a line of a program in a compensation.
 enum class LineRole : std::uint8_t { none, compensated, only_simulated };

@@ -232,10 +232,15 @@ State measure_given(Task& task, CompensationResult& out) {
   State state;
   auto given = std::make_shared<Trial>();
   ShiftedProgram source = given_program(task.job, task.setup);
+  source.leading = std::make_shared<simulate::LeadingRuns>();
+  if (task.setup->own_target())
+    source.leading->runs =
+        runs_before(*source.program, expected_finishing(task.job, *source.program, task.setup->target).moves);
   simulate::Prediction prediction = predict(source, nullptr, progress(task, "as given"));
   read_given(task, prediction, out);
   given->keep(std::move(prediction));
   select_moves(task, *given, out);
+  source.leading->runs = runs_before(*source.program, out.scope.finishing.moves);
   state.versions.push_back(std::make_unique<Version>(std::move(source), out.scope.finishing.moves, task.spacing_mm()));
   state.activate(0);
   Version& version = *state.active;

@@ -113,6 +113,7 @@ void warn_of_run(const Task& task, std::uint32_t block, const std::string& why, 
 std::unique_ptr<Version> taken_over(const Task& task, const Version& given, const machine::Job& job,
                                     SimulatedProgram program, EarlierCuts repeated) {
   ShiftedProgram source = given.source;
+  source.leading = nullptr;
   const std::size_t count = program.moves_in_part().moves.size();
   std::vector<bool> compensated(count, false);
   for (std::size_t m = 0; m < repeated.moves.size(); ++m) compensated[repeated.moves[m]] = given.compensated[m];

@@ -59,6 +59,7 @@ simulate::Prediction predict(const ShiftedProgram& from, const Emitted* emitted,
   simulate::PredictOptions options;
   options.progress = progress;
   options.part_yields = from.part_yields;
+  options.leading = from.leading.get();
   return from.predictor(from.job, *from.target, emitted ? emitted->program : *from.program, options);
 }
 

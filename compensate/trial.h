@@ -59,6 +59,8 @@ struct ShiftedProgram {
   std::vector<bool> first_cuts{};  ///< whether each move belongs to a run that is cut again; empty: none does
   /// Kept between the rounds, whose shifts hardly change how the part yields; null: the target's, or not known yet.
   std::shared_ptr<const simulate::PartSurvey> part_yields{};
+  /// What the tools before the first compensated move leave; of this program alone. Null: nothing is kept.
+  std::shared_ptr<simulate::LeadingRuns> leading{};
 };
 
 /// The given program of a set-up, which is kept.

@@ -378,6 +378,8 @@ struct PathCut {
   std::vector<std::vector<Contact>> contacts{};  ///< one per run, or empty
   const PartSurvey* part_yields = nullptr;       ///< along the path
   removal::SurfaceMap* tool_surface = nullptr;   ///< see CutOptions
+  LeadingRuns* leading = nullptr;                ///< see PredictOptions
+  bool begun = false;                            ///< the stock, the surface and the loads are those after `leading`
 };
 
 CutOptions cut_options_of(const Job& job, const PathCut& how, const machine::Tool& tool) {
@@ -420,21 +422,34 @@ CutResult cut_run_of(removal::Stock& stock, const Job& job, const removal::ToolR
 /// Tooth passings without a static equilibrium: about half a minute of them.
 constexpr std::size_t kGiveUpAfter = 2000;
 
+/// Keeps the state after the first runs of a path. From now on it shares the stock.
+void keep(removal::Stock& stock, const removal::StampPath& path, const PathLoads& loads, const PathCut& how) {
+  const std::size_t runs = how.leading->runs, stamps = path.runs[runs - 1].from + path.runs[runs - 1].count;
+  stock.share();
+  how.leading->cut.emplace(LeadingRuns::Cut{{path.stamps.begin(), path.stamps.begin() + std::ptrdiff_t(stamps)},
+                                            {path.runs.begin(), path.runs.begin() + std::ptrdiff_t(runs)},
+                                            removal::Stock(stock),
+                                            removal::SurfaceMap(*how.surface),
+                                            loads});
+}
+
 /// Cuts every run of the path out of `stock`, which is `blank` before the first one.
 PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job& job, const SimulatedProgram& program,
                    PathCut how) {
-  PathLoads out;
+  PathLoads out = how.begun ? how.leading->cut->loads : PathLoads();
+  const std::size_t known = how.begun ? how.leading->cut->runs.size() : 0;
   const auto all = static_cast<double>(program.path.stamps.size());
   auto next_contacts = how.contacts.begin();
-  std::size_t run_index = 0;
+  std::size_t run_index = 0, yielding_run = 0;
   out.holes.count = removal::count_holes(program.moves_in_part(), program.holes);
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     const std::size_t from = run.from;
     const std::vector<Contact> contacts = how.contacts.empty() ? std::vector<Contact>() : std::move(*next_contacts++);
+    if (run_index++ < known) return;
     CutOptions options = cut_options_of(job, how, tool);
     if (from == program.path.runs.front().from) options.blank = &blank;
     const std::optional<deflection::PartCompliance> part =
-        how.part_yields ? how.part_yields->along(program.path, run_index++) : std::nullopt;
+        how.part_yields ? how.part_yields->along(program.path, yielding_run++) : std::nullopt;
     if (part) options.part = &*part;
     if (how.progress)
       options.progress = [&](double fraction) {
@@ -451,6 +466,7 @@ PathLoads cut_path(removal::Stock& stock, const removal::Stock& blank, const Job
     }
     if (how.chip_ratio > 0) cut_run.loads_at_ratio.resize(stamps.size());
     add_piece(run, std::move(cut_run), out);
+    if (how.leading && !how.begun && run_index == how.leading->runs) keep(stock, program.path, out, how);
   });
   return out;
 }
@@ -515,6 +531,20 @@ Prediction::DeflectionFigures deflection_figures(const std::vector<removal::Surf
 
 }  // namespace
 
+bool LeadingRuns::begin(const removal::StampPath& path) const {
+  if (!cut || path.runs.size() < cut->runs.size() || path.stamps.size() < cut->stamps.size()) return false;
+  const auto same_run = [](const removal::ToolRun& a, const removal::ToolRun& b) {
+    return a.tool == b.tool && a.from == b.from && a.count == b.count && a.kind == b.kind;
+  };
+  const auto same_stamp = [](const removal::Stamp& a, const removal::Stamp& b) {
+    return a.t_s == b.t_s && a.pose.tip_mm == b.pose.tip_mm && a.pose.axis == b.pose.axis &&
+           a.pose.spin_rad == b.pose.spin_rad && a.feed_per_tooth_mm == b.feed_per_tooth_mm &&
+           a.fraction == b.fraction && a.first == b.first && a.move == b.move;
+  };
+  return std::equal(cut->runs.begin(), cut->runs.end(), path.runs.begin(), same_run) &&
+         std::equal(cut->stamps.begin(), cut->stamps.end(), path.stamps.begin(), same_stamp);
+}
+
 PathLoads predict_loads(const Job& job, const removal::Stock& blank, const SimulatedProgram& program,
                         const LoadOptions& options) {
   removal::Stock stock(blank);
@@ -524,18 +554,21 @@ PathLoads predict_loads(const Job& job, const removal::Stock& blank, const Simul
 
 Prediction predict(const Job& job, const Target& target, const SimulatedProgram& program,
                    const PredictOptions& options) {
+  const std::shared_ptr<const PartSurvey> part_yields = part_under(job, target, program, options.part_yields);
+  LeadingRuns* leading = part_yields || options.turn_from || options.chip_ratio > 0 ? nullptr : options.leading;
+  const bool begun = leading && leading->begin(program.path);
+  const std::size_t begun_stamps = begun ? leading->cut->stamps.size() : 0;
   std::vector<std::vector<Contact>> contacts_of_runs;
   std::optional<Stage> stage(std::in_place, "finding the contacts", program.path.stamps.size());
   for_each_run(job, program.path, [&](const removal::ToolRun& run, const machine::Tool& tool, auto stamps) {
     auto& contacts = contacts_of_runs.emplace_back();
-    if (options.contacts && run.kind == removal::RunKind::milling)
+    if (options.contacts && run.kind == removal::RunKind::milling && run.from >= begun_stamps)
       contacts = contacts_of(target.surface, tool, stamps, *stage);
   });
   stage.reset();
   if (options.surface_read) options.surface_read();
-  removal::SurfaceMap map = options.take_map ? options.take_map() : *target.map;
-  auto machined = std::make_unique<removal::Stock>(target.blank);
-  const std::shared_ptr<const PartSurvey> part_yields = part_under(job, target, program, options.part_yields);
+  removal::SurfaceMap map = begun ? leading->cut->marks : options.take_map ? options.take_map() : *target.map;
+  auto machined = std::make_unique<removal::Stock>(begun ? leading->cut->stock : target.blank);
   std::optional<removal::SurfaceMap> tool_surface;
   if (part_yields) tool_surface.emplace(map);
   PathLoads loads = cut_path(*machined, target.blank, job, program,
@@ -546,7 +579,9 @@ Prediction predict(const Job& job, const Target& target, const SimulatedProgram&
                               .surface = &map,
                               .contacts = std::move(contacts_of_runs),
                               .part_yields = part_yields.get(),
-                              .tool_surface = tool_surface ? &*tool_surface : nullptr});
+                              .tool_surface = tool_surface ? &*tool_surface : nullptr,
+                              .leading = leading,
+                              .begun = begun});
   std::vector<removal::SurfacePoint> surface = map.take();
   if (tool_surface) {
     const std::vector<float> of_tool = tool_surface->take_errors_mm();

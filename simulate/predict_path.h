@@ -136,6 +136,31 @@ struct Prediction {
   std::optional<DeflectionFigures> deflection_parts_um{};
 };
 
+/// The loads of every stamp, the volumes, and what is beyond the model, as in Prediction::cut.
+struct PathLoads {
+  CutResult cut;
+  HoleFigures holes;
+};
+
+/// What the first tools of a path have left, for predictions of one job against one target whose paths begin with the
+/// same stamps: those go on from there. A tool starts from rest, so that the result is the same.
+struct LeadingRuns {
+  /// The state after them.
+  struct Cut {
+    std::vector<removal::Stamp> stamps;
+    std::vector<removal::ToolRun> runs;
+    removal::Stock stock;
+    removal::SurfaceMap marks;
+    PathLoads loads;
+  };
+  std::size_t runs =
+      0;  ///< number of the path's first runs that the next prediction keeps, unless it is known; 0: none
+  std::optional<Cut> cut{};
+
+  /// Whether `path` begins with them.
+  bool begin(const removal::StampPath& path) const;
+};
+
 /// `contacts`: also find where each stamp touches the target (only for the deflection at the contact).
 struct PredictOptions {
   bool contacts = true;
@@ -144,6 +169,8 @@ struct PredictOptions {
   /// The survey of a program with the same stretches (PartSurvey::fits), to be used instead of Target::part_yields;
   /// empty: that one, or one of the program's own path where its stretches are others.
   std::shared_ptr<const PartSurvey> part_yields{};
+  /// Used and filled unless the part yields; not by processes that share a prediction. Null: everything is cut.
+  LeadingRuns* leading = nullptr;
   std::function<void(double)> progress;
   std::function<void()> surface_read;  ///< called when Target::surface is no longer needed
   /// Returns Target::map of the target, to be used up; empty: it is copied, for further predictions. Called after
@@ -165,11 +192,6 @@ struct LoadOptions {
   std::function<void(double)> progress;
 };
 
-/// The loads of every stamp, the volumes, and what is beyond the model, as in Prediction::cut.
-struct PathLoads {
-  CutResult cut;
-  HoleFigures holes;
-};
 PathLoads predict_loads(const machine::Job& job, const removal::Stock& blank, const SimulatedProgram& program,
                         const LoadOptions& options);
 
