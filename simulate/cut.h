@@ -65,7 +65,8 @@ struct CutOptions {
   std::size_t longest_gap = deflection::ReadingPace::kLongest;  ///< see SettleOptions
   Vec3 axis_compliance_mm_per_N = Vec3::Zero();                 ///< of the machine's axes
   bool drilling = false;  ///< straight down: see simulate/holes.h; with rigid coupling
-  /// Static: NoRest is thrown after so many readings without an equilibrium, where they are kHopeless of all so far.
+  /// Static: NoRest is thrown after so many readings without an equilibrium, where they are kHopeless of all that cut
+  /// so far. One of thousands of chips counts as several.
   std::size_t give_up_after = std::numeric_limits<std::size_t>::max();
   std::function<void(double)> progress;    ///< completed fraction, 0 to 1
   const removal::Stock* blank = nullptr;   ///< copy of the uncut stock if available; saves a copy
@@ -112,9 +113,9 @@ struct CutResult {
 
 /// Thrown where a cut is given up: the tool comes to rest in hardly any tooth passing.
 struct NoRest {
-  static constexpr double kHopeless = 0.8;
-  std::size_t unsettled = 0, readings = 0;
-  std::uint32_t move = 0;  ///< Stamp::move of the first one
+  static constexpr double kHopeless = 0.7;
+  std::size_t unsettled = 0, readings = 0;  ///< readings: those that cut
+  std::uint32_t move = 0;                   ///< Stamp::move of the first one
   deflection::NoEquilibrium reason = deflection::NoEquilibrium::swings;
 };
 

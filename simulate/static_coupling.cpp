@@ -65,6 +65,7 @@ class StaticCoupling : public Coupling {
         continue;
       }
       ++result.read;
+      if (!passing.chips.empty()) ++cutting_readings_;
       behind.wait();
       behind.run([this, &loads, &pass, &deflections, &result, all, chips = passing.chips, from, k] {
         tool_.model.evaluate(chips, from + k, removal::motion_in_tool(all, from + k), pass);
@@ -84,10 +85,11 @@ class StaticCoupling : public Coupling {
       }
       settled_ = passing.settled;
       stand();
-      if (!passing.settled && ++unsettled_readings_ >= tool_.options.give_up_after &&
-          static_cast<double>(unsettled_readings_) > NoRest::kHopeless * static_cast<double>(result.read)) {
+      if (!passing.settled) ++unsettled_readings_, unsettled_weight_ += weight_of(passing.chips.size());
+      if (!passing.settled && unsettled_weight_ >= static_cast<double>(tool_.options.give_up_after) &&
+          static_cast<double>(unsettled_readings_) > NoRest::kHopeless * static_cast<double>(cutting_readings_)) {
         behind.wait();
-        throw NoRest{unsettled_readings_, result.read, result.unsettled_moves.front(),
+        throw NoRest{unsettled_readings_, cutting_readings_, result.unsettled_moves.front(),
                      result.unsettled_reasons.front()};
       }
     }
@@ -98,6 +100,12 @@ class StaticCoupling : public Coupling {
   }
 
  private:
+  /// A reading takes time by its chips: one of very many counts as several.
+  static double weight_of(std::size_t chips) {
+    constexpr double kMany = 4000;
+    return std::max(1.0, static_cast<double>(chips) / kMany);
+  }
+
   /// Loads of the passings that were not read, from the nearest of the same tooth that were. `before`: of the stretches
   /// before, which end with readings.
   void fill_between(std::span<const char> read, std::span<const StampLoad> before, std::span<StampLoad> loads) const {
@@ -147,7 +155,8 @@ class StaticCoupling : public Coupling {
   const CutTool& tool_;
   std::optional<StaticCut> static_cut_;
   bool settled_ = true;  ///< the last tooth passing
-  std::size_t unsettled_readings_ = 0;
+  std::size_t cutting_readings_ = 0, unsettled_readings_ = 0;
+  double unsettled_weight_ = 0;
 };
 
 }  // namespace
