@@ -123,5 +123,31 @@ TEST(StaticCut, AToolThatIsPulledIntoItsCutIsTold) {
   EXPECT_LE(deep.unsettled_moves.back(), 103u);
 }
 
+TEST(StaticCut, OneWithoutRestIsGivenUpByTheTimeItTakesWhateverAirWasCutBefore) {
+  auto tool = testing::make_tool(machine::ToolType::flat, 6, 2, 30);
+  tool.overhang_mm = 32;
+  tool.youngs_modulus_MPa = 210000;
+  constexpr std::size_t kAir = 300;
+  const auto given_up = [&](double envelope_step_mm) {
+    auto stock = testing::make_box({0, -4, -4}, {3, 4, 0}, 0.1);
+    std::vector<removal::Stamp> stamps;
+    testing::add_row(stamps, {-3.1 - 0.05 * kAir, 0, -3}, {0, 0, -3}, 0.05);
+    CutOptions options;
+    options.envelope_step_mm = envelope_step_mm;
+    options.give_up_after = 12;
+    try {
+      cut(stock, tool, machine::Material{1860, -900, 0, 15, 15, 0}, stamps, {}, 0, options);
+    } catch (const NoRest& found) {
+      return found;
+    }
+    return NoRest{};
+  };
+  const NoRest coarse = given_up(0.1), fine = given_up(0.005);
+  EXPECT_EQ(coarse.unsettled, 12u);
+  EXPECT_LT(coarse.readings, kAir);
+  EXPECT_GT(fine.unsettled, 0u);
+  EXPECT_LT(fine.unsettled, 8u) << "each of them takes longer";
+}
+
 }  // namespace
 }  // namespace camber::simulate
