@@ -153,8 +153,8 @@ struct LeadingRuns {
     removal::SurfaceMap marks;
     PathLoads loads;
   };
-  std::size_t runs =
-      0;  ///< number of the path's first runs that the next prediction keeps, unless it is known; 0: none
+  /// Number of runs that a prediction keeps whose path does not begin with those of `cut`; 0: none.
+  std::size_t runs = 0;
   std::optional<Cut> cut{};
 
   /// Whether `path` begins with them.

@@ -65,7 +65,7 @@ class StaticCoupling : public Coupling {
         continue;
       }
       ++result.read;
-      if (!passing.chips.empty()) ++cutting_readings_;
+      if (!passing.chips.empty() || !passing.settled) ++cutting_readings_;
       behind.wait();
       behind.run([this, &loads, &pass, &deflections, &result, all, chips = passing.chips, from, k] {
         tool_.model.evaluate(chips, from + k, removal::motion_in_tool(all, from + k), pass);

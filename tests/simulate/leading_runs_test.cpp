@@ -22,14 +22,14 @@ machine::Job step_job() {
     job.tools[number] = tool;
   }
   job.material = {2000, 700, 0, 15, 15, 0};
-  job.stock.box = {{0, 0, -2}, {12, 12, 0}};
+  job.stock.box = {{0, 0, -2}, {4, 9, 0}};
   return job;
 }
 
 std::string step(double rough_y, double wall_y) {
   return "G21 G90 G17\nT1 M6\nS3000 M3\nG0 X-5 Y" + std::to_string(rough_y) +
-         " Z5\nG0 Z-1.5\nG1 X17 F400\nG0 Z5\nT2 M6\nS3000 M3\nG0 X-5 Y" + std::to_string(wall_y) +
-         "\nG0 Z-1.5\nG1 X17 F300\nG0 Z5\nM30\n";
+         " Z5\nG0 Z-1.5\nG1 X9 F400\nG0 Z5\nT2 M6\nS3000 M3\nG0 X-5 Y" + std::to_string(wall_y) +
+         "\nG0 Z-1.5\nG1 X9 F300\nG0 Z5\nM30\n";
 }
 
 SimulatedProgram motion(const machine::Job& job, const std::string& text) {
@@ -54,36 +54,40 @@ void expect_same(const Prediction& a, const Prediction& b) {
   EXPECT_EQ(a.machined->volume_mm3(), b.machined->volume_mm3());
 }
 
-TEST(LeadingRuns, GiveWhatTheWholePathGives) {
-  const machine::Job job = step_job();
-  const SimulatedProgram given = motion(job, step(3, 2.4)), shifted = motion(job, step(3, 2.43));
-  ASSERT_EQ(given.path.runs.size(), 2u);
+class LeadingRunsTest : public ::testing::Test {
+ protected:
+  LeadingRunsTest() { leading.runs = 1; }
+
+  Prediction going_on(const SimulatedProgram& program) {
+    PredictOptions options;
+    options.leading = &leading;
+    return predict(job, target, program, options);
+  }
+  Prediction whole(const SimulatedProgram& program) const { return predict(job, target, program, {}); }
+
+  machine::Job job = step_job();
+  SimulatedProgram given = motion(job, step(3, 2.4));
   Diagnostics diagnostics;
-  const Target target = make_target(job, given, diagnostics);
+  Target target = make_target(job, given, diagnostics);
   LeadingRuns leading;
-  leading.runs = 1;
-  PredictOptions going_on;
-  going_on.leading = &leading;
-  expect_same(predict(job, target, given, going_on), predict(job, target, given, {}));
+};
+
+TEST_F(LeadingRunsTest, GiveWhatTheWholePathGives) {
+  const SimulatedProgram shifted = motion(job, step(3, 2.43));
+  ASSERT_EQ(given.path.runs.size(), 2u);
+  expect_same(going_on(given), whole(given));
   ASSERT_TRUE(leading.cut.has_value());
   EXPECT_EQ(leading.cut->stamps.size(), given.path.runs[0].count);
   EXPECT_TRUE(leading.begin(shifted.path));
-  for (int again = 0; again < 2; ++again)
-    expect_same(predict(job, target, shifted, going_on), predict(job, target, shifted, {}));
+  const Prediction expected = whole(shifted);
+  for (int again = 0; again < 2; ++again) expect_same(going_on(shifted), expected);
 }
 
-TEST(LeadingRuns, OfAnotherPathAreCutAnew) {
-  const machine::Job job = step_job();
-  const SimulatedProgram given = motion(job, step(3, 2.4)), shifted = motion(job, step(3.1, 2.4));
-  Diagnostics diagnostics;
-  const Target target = make_target(job, given, diagnostics);
-  LeadingRuns leading;
-  leading.runs = 1;
-  PredictOptions going_on;
-  going_on.leading = &leading;
-  predict(job, target, given, going_on);
+TEST_F(LeadingRunsTest, OfAnotherPathAreCutAnew) {
+  const SimulatedProgram shifted = motion(job, step(3.1, 2.4));
+  going_on(given);
   EXPECT_FALSE(leading.begin(shifted.path));
-  expect_same(predict(job, target, shifted, going_on), predict(job, target, shifted, {}));
+  expect_same(going_on(shifted), whole(shifted));
   EXPECT_TRUE(leading.begin(shifted.path)) << "kept instead";
 }
 
