@@ -20,6 +20,8 @@ using simulate::SimulatedProgram;
 
 constexpr double kStretch_mm = 4;  // of the path before and behind the worst place, over which an effect is judged
 constexpr double kRunIn_mm = 1.5;  // more of it that is cut before and behind
+constexpr double kFew = 0.005;     // of the path's points: a limit that holds back fewer explains no error
+constexpr double kLess = 0.95;     // of the 95th percentile with the limit: without it less must be left
 
 double ceil_to(double value, double step) { return std::ceil(value / step - 1e-9) * step; }
 
@@ -182,6 +184,7 @@ void find_effect(const Task& task, const State& state, const WithoutLimit& witho
   const Version& version = *state.active;
   const Emitted& emitted = *state.best.trial->emitted;
   limit.count = without.held.size();
+  limit.of_path = static_cast<double>(limit.count) / static_cast<double>(version.path.points().size());
   const auto change_mm = [&](std::size_t i) {
     return (without.path.points()[i].shift_mm - version.path.points()[i].shift_mm).norm();
   };
@@ -280,6 +283,10 @@ bool was_stiffened(const Version& version) {
 }
 
 }  // namespace
+
+bool BindingLimit::larger_helps() const {
+  return of_path >= kFew && (!effect.known() || effect.without_um <= kLess * effect.with_um);
+}
 
 std::string sentence(const BindingLimit& limit) {
   std::string out = fmt::format("{} = {:.3g}{} binds", limit.key, limit.value, limit.own ? "" : " (default)");

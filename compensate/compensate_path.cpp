@@ -42,6 +42,7 @@ CompensationResult compensate(const machine::Job& job, Diagnostics& diagnostics,
   State state = measure_given(task, out);
   converge(task, state);
   spend_time(task, state);
+  combine_rounds(task, state);
   stay_out_of_part(task, state);
   const bool better = choose(task, state);
   conclude(task, state, better, out);

@@ -59,6 +59,7 @@ struct Round {
   double overcorrected_fraction = 0;  ///< fraction of the area whose error changed its sign and is over the tolerance
   double deepest_um = 0;              ///< depth that 99.9 % of the compensated surface keeps
   bool guard = false;                 ///< a round of the guard against gouging
+  bool combined = false;              ///< shifts of the rounds before, each where it left the least (rounds.h)
   double machine_time_s = 0;
   std::size_t slowed = 0;    ///< changes of feed: stretches of the path with a feed of their own, and their ends
   std::size_t repeated = 0;  ///< cuts that are added: runs of cuts between rapids once more, or several times

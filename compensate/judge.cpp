@@ -64,6 +64,20 @@ bool worth_a_round(const Task& task, const State& state, const StepModel& model)
          (1 - kMinGain) * best.error_um.rms;
 }
 
+/// Keeps of the last trial what combine_rounds needs.
+void remember_places(State& state) {
+  const Trial& trial = *state.last;
+  RoundPlaces kept{.version = trial.version,
+                   .shifts = trial.shifts,
+                   .fractions = trial.fractions,
+                   .compensated = trial.observed.compensated};
+  kept.points.reserve(trial.observed.points.size());
+  for (const Observation& o : trial.observed.points)
+    kept.points.push_back({static_cast<float>(o.error_mm), static_cast<std::uint32_t>(o.place.lower),
+                           static_cast<float>(o.place.upper_fraction)});
+  state.places.push_back(std::move(kept));
+}
+
 }  // namespace
 
 std::size_t choose_round(std::span<const RoundFigures> rounds, double depth_limit_um, bool by_p95) {
@@ -142,6 +156,7 @@ void record(const Task& task, State& state, Round round) {
   round.slowed = count_feed_changes(version.path);
   round.repeated = version.passes().size();
   state.rounds.push_back(round);
+  remember_places(state);
   const bool spoilt = version.repeated && version.repeated->pass_before && cuts_into_part(task, trial);
   state.figures.push_back({round.error_um.rms, round.error_um.p95, round.deepest_um,
                            round.machine_time_s > state.allowed_s || spoilt, worse_of(task, trial).p999_um});

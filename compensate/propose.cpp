@@ -1,6 +1,7 @@
 #include "compensate/propose.h"
 
 #include <algorithm>
+#include <array>
 
 namespace camber::compensate {
 namespace {
@@ -108,6 +109,32 @@ PlannedRound propose(const Task& task, State& state, double fraction, const Guar
   Fit* fit = guard ? &fit_lifts : &fit_shift;
   choose_splits(task, version, observations, fit);
   fit_and_emit(task, version, observations, fit, out);
+  return out;
+}
+
+PlannedRound propose_shifts(const Task& task, State& state, std::span<const Vec3> wanted) {
+  Version& version = *state.active;
+  PlannedRound out{.from = state.last, .made = std::make_shared<Trial>(), .shows_gain = false};
+  out.round.gain = version.sensitivity.mean();
+  out.round.combined = true;
+  version.path.set_shifts(state.last->shifts);
+  FeedLever::set_fractions(version.path, state.last->fractions);
+  std::vector<Observation> observations;
+  for (const ShiftChain& chain : version.path.chains())
+    for (std::size_t i = chain.from; i < chain.from + chain.count; ++i) {
+      const bool last = i + 1 == chain.from + chain.count;
+      const Vec3 change = wanted[i] - state.last->shifts[i];
+      for (const Vec3& axis : std::array<Vec3, 3>{Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}) {
+        Observation o;
+        o.place = last ? ShiftPath::PointInterval{i - 1, 1.0} : ShiftPath::PointInterval{i, 0.0};
+        o.normal = axis;
+        o.error_mm = -axis.dot(change);
+        o.area_mm2 = 1;
+        observations.push_back(o);
+      }
+    }
+  choose_splits(task, version, observations, &fit_lifts);
+  fit_and_emit(task, version, observations, &fit_lifts, out);
   return out;
 }
 

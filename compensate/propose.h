@@ -33,6 +33,9 @@ using Prepare = std::function<void(std::vector<Observation>&)>;
 /// Fits new shifts of the active version to the last trial's error and emits their text; does not predict it.
 PlannedRound propose(const Task& task, State& state, double fraction, const Guard* guard, const Prepare& prepare = {});
 
+/// The same with shifts as near to these, one per point of the path, as the path's smoothness allows.
+PlannedRound propose_shifts(const Task& task, State& state, std::span<const Vec3> wanted);
+
 /// A lift must remove at least this fraction of the depth beyond the limit.
 inline constexpr double kGuardGain = 0.1;
 

@@ -210,7 +210,7 @@ std::vector<std::string> remedies_of(const CauseFigure& figure, const Tried& tri
   std::vector<std::string> out;
   const auto limits = [&](auto... keys) {
     for (const BindingLimit& limit : tried.limits)
-      if (((limit.key == keys) || ...)) out.push_back(larger(limit));
+      if (((limit.key == keys) || ...) && limit.larger_helps()) out.push_back(larger(limit));
   };
   const auto lower_feed = [&](const char* words) {
     if (!tried.feeds) out.push_back(words);

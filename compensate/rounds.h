@@ -8,6 +8,10 @@ namespace camber::compensate {
 /// Rounds of shifts from the last trial on.
 void converge(const Task& task, State& state);
 
+/// Rounds of the shifts of those rounds of the active version that have the feeds of the best one, each where it leaves
+/// the least error, while that is expected to lower the 95th percentile or what is worse than given.
+void combine_rounds(const Task& task, State& state);
+
 /// Rounds that lift the path where the best round's surface lies deeper than the limit.
 void stay_out_of_part(const Task& task, State& state);
 

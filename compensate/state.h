@@ -5,9 +5,10 @@
 //   measure.h      predicts a program: the given one, or one with shifts
 //   propose.h      fits the next shifts to an error and emits them (trial.h)
 //   judge.h        figures of a trial, what is kept, when the rounds end
-//   rounds.h       rounds of these three, and those that keep the path out of the part
+//   rounds.h       rounds of these three, of the best of them place by place, and those that keep out of the part
 //   spend_time.h   lower feeds, and second cuts (second_cuts.h), within a machine time
 //   outcome.h      the figures of the program that is written, and its text
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -115,12 +116,27 @@ struct RoundFigures {
   double worse_um = 0;            ///< WorsePlaces::p999_um
 };
 
+/// What a round did, and where, for combine_rounds: no more than that, since every round is kept.
+struct RoundPlaces {
+  std::size_t version = 0;  ///< Trial::version
+  std::vector<Vec3> shifts;
+  std::vector<double> fractions;
+  std::vector<bool> compensated;  ///< Observed::compensated
+  struct OfPoint {
+    float error_mm = 0;       ///< judged
+    std::uint32_t lower = 0;  ///< ShiftPath::PointInterval that made it
+    float upper_fraction = 0;
+  };
+  std::vector<OfPoint> points{};  ///< one per point of the surface
+};
+
 struct State {
   std::vector<std::unique_ptr<Version>> versions;
   Version* active = nullptr;  ///< its path is shifted
   std::vector<Round> rounds;
   std::vector<TimePoint> time_points;
   std::vector<RoundFigures> figures;  ///< one a round
+  std::vector<RoundPlaces> places;    ///< one a round
   std::shared_ptr<const Trial> last;
   Kept best;
   Kept allowed;  ///< the best one that keeps the limits

@@ -8,6 +8,7 @@
 #include "checks/setup_checks.h"
 #include "checks/travel.h"
 #include "deflection/beam.h"
+#include "machine/cutter_parameters.h"
 #include "machine/force_law.h"
 #include "plausibility/rules.h"
 
@@ -81,26 +82,61 @@ void look_at_speed(const Evidence& e, Diagnostics& diagnostics) {
   }
 }
 
+namespace {
+
+constexpr double kDeepOften = 0.15;  // of a tool's way in material
+
+bool mills_with(const Evidence& e, std::uint32_t move, const ToolWork& work) {
+  const nc::Interpretation& moves = e.program.moves_in_part();
+  return e.program.selected[move] && e.survey->moves[move].cutting_mm > 0 &&
+         moves.state_of(moves.moves[move]).tool == work.number;
+}
+
+/// A chamfer cutter that meets material above its cone, where most of these have no edge.
+void look_at_cone(const Evidence& e, const ToolWork& work, Diagnostics& diagnostics) {
+  if (work.tool->type != machine::ToolType::chamfer) return;
+  const double cone_mm = machine::parameters_of(*work.tool).height_mm;
+  double above_mm = 0, highest = 0;
+  std::uint32_t where = 0;
+  for (std::uint32_t i = 0; i < e.survey->moves.size(); ++i) {
+    const checks::MoveCut& cut = e.survey->moves[i];
+    if (!mills_with(e, i, work) || cut.above_tip_mm <= cone_mm + e.survey->cell_mm) continue;
+    above_mm += cut.cutting_mm;
+    if (cut.above_tip_mm > highest) highest = cut.above_tip_mm, where = i;
+  }
+  if (above_mm <= kDeepOften * work.cut.cutting_mm) return;
+  diagnostics.add(e.at_move(
+      Severity::warning, where,
+      fmt::format("T{} is \"chamfer\" in the job and meets material up to {:.1f} mm above its tip, but its cone is "
+                  "{:.1f} mm high; a stock whose edges are cut and only lack their chamfer was expected (is the stock "
+                  "too high, or the tool another one?)",
+                  work.number, highest, cone_mm),
+      "cut-depth"));
+}
+
+}  // namespace
+
 void look_at_depth(const Evidence& e, Diagnostics& diagnostics) {
   constexpr double kSlot = 0.7;                   // of the diameter, and wider
   constexpr double kDeepSlot = 3, kDeepSide = 8;  // diameters
-  constexpr double kFraction = 0.15;              // of the tool's way in material
   if (!e.survey) return;
-  const nc::Interpretation& moves = e.program.moves_in_part();
   for (const ToolWork& work : e.tools) {
     const double d = work.tool->diameter_mm;
     double deep_mm = 0, deepest = 0;
     std::uint32_t first = 0;
-    for (std::uint32_t i = 0; i < moves.moves.size(); ++i) {
+    for (std::uint32_t i = 0; i < e.survey->moves.size(); ++i) {
       const checks::MoveCut& cut = e.survey->moves[i];
-      if (!e.program.selected[i] || cut.cutting_mm <= 0 || moves.state_of(moves.moves[i]).tool != work.number) continue;
+      if (!mills_with(e, i, work)) continue;
       const double width = cut.area_mm2 / cut.cutting_mm;
       if (cut.deepest_mm < (width > kSlot * d ? kDeepSlot : kDeepSide) * d) continue;
       if (deep_mm == 0) first = i;
       deep_mm += cut.cutting_mm;
       deepest = std::max(deepest, cut.deepest_mm);
     }
-    if (deep_mm <= kFraction * work.cut.cutting_mm) continue;
+    if (deep_mm <= kDeepOften * work.cut.cutting_mm) {
+      look_at_cone(e, work, diagnostics);
+      continue;
+    }
     diagnostics.add(e.at_move(
         Severity::warning, first,
         fmt::format("T{} cuts {:.1f} mm deep at once, {:.1f} times its diameter; at most {:g} times in a slot was "

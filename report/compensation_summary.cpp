@@ -121,6 +121,7 @@ Json rounds(const compensate::CompensationResult& c) {
     row["overcorrected_area"] = r.overcorrected_fraction;
     row["deepest_um"] = r.deepest_um;
     row["guard"] = r.guard;
+    row["combined"] = r.combined;
     row["machine_time_s"] = r.machine_time_s;
     row["feed_changes"] = r.slowed;
     row["repeated_runs"] = r.repeated;
@@ -313,6 +314,7 @@ std::string rounds_text(const compensate::CompensationResult& c) {
     const auto& r = c.rounds[i];
     std::string note = i == c.best ? "  <" : "";
     if (r.guard) note += "  guard";
+    if (r.combined) note += "  combined";
     if (r.step_fraction < 1) note += fmt::format("  step x {:.2g}", r.step_fraction);
     if (r.overcorrected_fraction >= 0.01) note += fmt::format("  {:.0f} % over", 100 * r.overcorrected_fraction);
     fmt::format_to(std::back_inserter(out), "{}{}\n",

@@ -97,6 +97,18 @@ void expect_kept_promises(unsigned seed) {
 
 TEST_P(RandomJobs, AreNeverWorseThanGivenNorBeyondTheirLimits) { expect_kept_promises(GetParam()); }
 
+TEST(CombinedRounds, TakeEachPlaceFromTheRoundThatLeavesTheLeastThere) {
+  const tests::TempFolder folder;
+  Diagnostics diagnostics;
+  const CompensationResult c = compensate(random_job(29, folder), diagnostics, {});
+  ASSERT_TRUE(c.rounds[c.best].combined);
+  for (std::size_t i = 0; i < c.rounds.size(); ++i) {
+    if (i == c.best) continue;
+    EXPECT_LT(c.rounds[c.best].error_um.p95, 0.95 * c.rounds[i].error_um.p95) << "round " << i;
+    EXPECT_LT(c.rounds[c.best].error_um.rms, 0.95 * c.rounds[i].error_um.rms) << "round " << i;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Quick, RandomJobs, ::testing::Range(0u, 10u));
 INSTANTIATE_TEST_SUITE_P(Slow, RandomJobs, ::testing::Range(10u, 40u));
 

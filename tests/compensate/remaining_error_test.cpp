@@ -137,6 +137,14 @@ TEST(Causes, NameTheFigureAtWhichALimitNoLongerBinds) {
   EXPECT_EQ(remedies_of({.cause = Cause::limited}, tried),
             (std::vector<std::string>{"max_shift_mm = 0.134 (0.1 now)", "a shorter tool"}));
   EXPECT_EQ(remedies_of({.cause = Cause::guard}, tried), std::vector<std::string>{"max_overcut_um = 6.5"});
+
+  // It was tried and brought nothing, or it holds back next to nothing.
+  BindingLimit vain = placed, rare = placed;
+  vain.effect.without_um = 4.9;
+  rare.of_path = 0.002;
+  for (const BindingLimit& limit : {vain, rare})
+    EXPECT_EQ(remedies_of({.cause = Cause::limited}, {.feeds = true, .limits = {limit}}),
+              std::vector<std::string>{"a shorter tool"});
 }
 
 TEST(Causes, ServoLagPathToleranceAndCornerLawAreThree) {

@@ -253,6 +253,15 @@ TEST(Plausibility, CutsDeeperThanTheCutterIsWide) {
             "p.nc:9: warning: T1 cuts 26.0 mm deep at once, 3.2 times its diameter; at most 3 times in a slot was "
             "expected (is the stock too high, or the tool another one?) [cut-depth]\n");
   EXPECT_EQ(of_check(said({.job = deep_stock, .program = pocket_at(-22, -22)}), "cut-depth"), "");
+
+  // A cone of 90 degrees from 0.4 mm to 8 mm is 3.8 mm high.
+  const std::string chamfer =
+      replaced(kPocket, "\"flat\"", "\"chamfer\"\ntip_diameter_mm = 0.4\npoint_angle_deg = 90.0");
+  EXPECT_EQ(of_check(said({.job = chamfer, .program = pocket_at(-6, -6)}), "cut-depth"),
+            "p.nc:9: warning: T1 is \"chamfer\" in the job and meets material up to 6.0 mm above its tip, but its cone "
+            "is 3.8 mm high; a stock whose edges are cut and only lack their chamfer was expected (is the stock too "
+            "high, or the tool another one?) [cut-depth]\n");
+  EXPECT_EQ(of_check(said({.job = chamfer, .program = pocket_at(-3, -3)}), "cut-depth"), "");
 }
 
 TEST(Plausibility, CutsThatNeitherSpindleNorToolStands) {
