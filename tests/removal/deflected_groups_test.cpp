@@ -74,6 +74,59 @@ Stock box() {
   return {[=](const Vec3& p) { return box_distance_mm(p, lo, hi); }, lo, hi, 0.1, 5};
 }
 
+/// A flat cutter that is displaced along its axis alone, otherwise at each step and each stamp: the floor lies where
+/// the edges of the stamp passed that moved down most there, to what the stock passes of a bottom.
+TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
+  constexpr double kPassed_um = 0.5, kRounding_um = 0.1;
+  EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::flat), 2.0, 0.1, kPi / 90);
+  make_patches(envelope, 0.24);
+  std::vector<Stamp> stamps;
+  for (int i = 0; i < kStampsOfARow; ++i) {
+    Stamp s;
+    s.pose.tip_mm = {-1 + 0.12 * i, 0.03, -1.013};
+    s.first = i == 0;
+    s.feed_per_tooth_mm = {0.12, 0, 0};
+    stamps.push_back(s);
+  }
+  DeflectionTable table(stamps.size(), envelope.steps_per_pitch, {0.0, 2.0}, true);
+  for (std::size_t k = 0; k < stamps.size(); ++k) {
+    const std::span<float> row(table.row(static_cast<std::ptrdiff_t>(k)), table.row_size());
+    for (int m = 0; m < table.steps; ++m)
+      AxialRow(row.subspan(table.lateral_size()))
+          .set(static_cast<std::size_t>(m),
+               0.004 * std::sin(2 * kPi * m / table.steps + 0.4 * static_cast<double>(k)) - 0.001);
+  }
+  Stock stock = box(), blank = box();
+  DeflectedEngager engager(stock, blank, envelope, stamps, 0);
+  engager.start(0, stamps.size(), table);
+  for (std::size_t k = 0; k < stamps.size(); k += 8) engager.cut(k, 8);
+  engager.commit();
+  int seen = 0;
+  double deepest_um = 0;
+  for (int x = 25; x < 50; ++x)
+    for (int y = -10; y <= 10; ++y) {
+      const double at_x = 0.1 * x, at_y = 0.1 * y;
+      double floor_mm = 0;
+      for (std::size_t k = 0; k < stamps.size(); ++k) {
+        const Vec3& tip = stamps[k].pose.tip_mm;
+        const double dx = at_x - tip.x(), dy = at_y - tip.y(), rho = std::hypot(dx, dy);
+        if (rho > 1.4 || rho < 1e-6) continue;  // nearer to the wall it is the wall that a voxel tells of
+        const double step = table.step_at(std::atan2(dy, dx), 0, envelope.lag_per_mm, envelope.flutes);
+        floor_mm = std::min(floor_mm, tip.z() + table.at(table.row(static_cast<std::ptrdiff_t>(k)), 0, step).z());
+      }
+      int z = 0;
+      while (z > -20 && stock.voxel({x, y, z - 1}) > 0) --z;
+      const double left_mm = 0.1 * z - static_cast<double>(stock.voxel({x, y, z}));
+      // Stamps near whose wall the place lies may have gone deeper.
+      EXPECT_LT(1000 * (left_mm - floor_mm), kPassed_um + kRounding_um) << x << ' ' << y;
+      EXPECT_GT(1000 * (left_mm + 1.013), -5.1) << x << ' ' << y;
+      deepest_um = std::max(deepest_um, -1000 * (left_mm + 1.013));
+      ++seen;
+    }
+  EXPECT_EQ(seen, 25 * 21);
+  EXPECT_GT(deepest_um, 4.4);
+}
+
 class DeflectedGroups : public ::testing::TestWithParam<machine::ToolType> {
  protected:
   DeflectedGroups()
