@@ -109,25 +109,8 @@ StampDeflection StampDeflections::of(std::ptrdiff_t stamp) const {
   if (deflection.axial_mm > 0) {
     for (float& outwards : deflection.outward_mm) outwards += static_cast<float>(deflection.axial_mm);
     deflection.largest_mm = std::hypot(deflection.largest_mm, deflection.axial_mm);
-    bound_bottom(stamp, deflection);
   }
   return deflection;
-}
-
-/// The bottom is where the edges begin: at the first node's directions, whose spread is more than one step.
-void StampDeflections::bound_bottom(std::ptrdiff_t stamp, StampDeflection& deflection) const {
-  auto& bound = deflection.downward_mm;
-  bound.fill(-static_cast<float>(deflection.axial_mm));
-  for (int m = 0; m < deflections_.steps; ++m) {
-    const float down = -deflections_.axial_mm(deflections_.row(stamp), m);
-    for (int j = 0; j < flutes_; ++j) {
-      const int centre = centre_[static_cast<std::size_t>(m / group_ * flutes_ + j)];
-      for (int o = -spread_; o <= spread_; ++o) {
-        float& of_sector = bound[static_cast<std::size_t>((centre + o) & (StampDeflection::kSectors - 1))];
-        of_sector = std::max(of_sector, down);
-      }
-    }
-  }
 }
 
 }  // namespace camber::removal

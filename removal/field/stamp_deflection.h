@@ -19,8 +19,6 @@ struct StampDeflection {
   /// negative where it moves inwards at least so far.
   std::array<float, kSectors> outward_mm{};
   double axial_mm = 0;  ///< bounds their axial parts, which count in both of the bounds above
-  /// By the same directions: bounds how far a flat bottom moves down there; negative where it moves up at least so far.
-  std::array<float, kSectors> downward_mm{};
 };
 
 /// Bends of the stamps of one table.
@@ -31,8 +29,6 @@ class StampDeflections {
   StampDeflection of(std::ptrdiff_t stamp) const;
 
  private:
-  void bound_bottom(std::ptrdiff_t stamp, StampDeflection& deflection) const;
-
   const DeflectionTable& deflections_;
   int flutes_, spread_;
   int group_;                         ///< steps taken together: at most a degree

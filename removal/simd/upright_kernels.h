@@ -104,10 +104,9 @@ struct LineSearch {
 /// The addition for a deflected cutter.
 struct LineDeflection {
   DeflectionRow deflection;
-  float largest_mm;          ///< largest deflection of the row
-  float axial_mm;            ///< the largest along the axis
-  const float* outward_mm;   ///< by sector, StampDeflection::kSectors of them
-  const float* downward_mm;  ///< the same
+  float largest_mm;         ///< largest deflection of the row
+  float axial_mm;           ///< the largest along the axis
+  const float* outward_mm;  ///< by sector, StampDeflection::kSectors of them
   int sectors;
   float lag_per_mm, steps_per_rad;
 };

@@ -21,9 +21,8 @@ struct Vectors {
   using I = xsimd::batch<std::int32_t, A>;
   using Mask = xsimd::batch_bool<float, A>;
   static constexpr int n = static_cast<int>(F::size);
-  static constexpr int kSide = 17;            ///< Tile::kSide
-  static constexpr float kFar = 2;            ///< voxels: no cell with a surface in it reaches so far
-  static constexpr float kPassed_mm = 5e-4f;  ///< of a flat bottom, as ColumnCover::allow_axial
+  static constexpr int kSide = 17;  ///< Tile::kSide
+  static constexpr float kFar = 2;  ///< voxels: no cell with a surface in it reaches so far
 
   static F load(const float* p) { return F::load_unaligned(p); }
   static I load(const std::int32_t* p) { return I::load_unaligned(p); }
@@ -316,16 +315,14 @@ struct Vectors {
   }
 
   /// Depth of places inside the straight cutter, and their largest depth inside one that is deflected by at most
-  /// `outwards` in their direction (negative: at least so far inwards), by at most `largest` in any, by at most `axial`
-  /// along the axis and, where the nearest place is on its flat bottom, by at most `down` (negative: at least so far
-  /// upwards). A lateral deflection changes a distance by at most, or at least, its product with the
+  /// `outwards` in their direction (negative: at least so far inwards), by at most `largest` in any, and by at most
+  /// `axial` along the axis. A lateral deflection changes a distance by at most, or at least, its product with the
   /// radial part of the gradient, which grows with the distance from the axis.
   struct Inside {
     F straight, most;
     F radial;  ///< part of the gradient, at most
-    F passed;  ///< the place may stay where it is deeper by less
   };
-  static Inside inside_of(const LineCut& c, const F& rho, const F& z, float outwards, float down, const F& largest,
+  static Inside inside_of(const LineCut& c, const F& rho, const F& z, float outwards, const F& largest,
                           const F& axial) {
     const F zero(0.0f), one(1.0f);
     const auto place = RoundedCutter<F>{F(c.flat), F(c.corner)}.place(rho, z);
@@ -339,10 +336,7 @@ struct Vectors {
       const F least = out / xsimd::max(xsimd::sqrt(out * out + low * low), F(1e-12f));
       of_outwards = xsimd::select(low > zero, least * F(0.9999f), xsimd::select(place.outside > low, one, zero));
     }
-    const F of_bottom = F(down) - place.distance, most = F(outwards) * of_outwards - place.distance + axial;
-    const auto bottom = (radial <= zero) & (axial > zero);
-    return {-place.distance, xsimd::select(bottom, of_bottom, most), radial,
-            xsimd::select(bottom, F(kPassed_mm), zero)};
+    return {-place.distance, F(outwards) * of_outwards - place.distance + axial, radial};
   }
 
   /// The deflections at the feet of the columns of a line: good guesses for all of a column, however wide the vectors
@@ -370,7 +364,7 @@ struct Vectors {
     const F steps = ramp() * F(c.voxel), band(c.band), dx(c.dx);
     // How far a deflection moves the envelope outwards in each column, at most; near the axis a deflection turns a
     // place into another direction.
-    alignas(64) float slack[LineCut::kLine], down[LineCut::kLine];
+    alignas(64) float slack[LineCut::kLine];
     const F far_out(kFar * c.voxel + deflection.largest_mm);
     const F largest(deflection.largest_mm), axial(deflection.axial_mm),
         axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
@@ -380,10 +374,7 @@ struct Vectors {
                    F(static_cast<float>(deflection.sectors) / 6.28318531f);
       const I sector = xsimd::min(xsimd::max(to_int(at), I(0)), I(deflection.sectors - 1));
       const F outward = xsimd::min(Table<A>::gather(deflection.outward_mm, sector), largest);
-      const auto off_axis = F(dx2) + dy * dy > axis_zone2;
-      xsimd::select(off_axis, outward, largest).store_aligned(slack + j);
-      const F downward = xsimd::min(Table<A>::gather(deflection.downward_mm, sector), axial);
-      xsimd::select(off_axis, downward, axial).store_aligned(down + j);
+      xsimd::select(F(dx2) + dy * dy > axis_zone2, outward, largest).store_aligned(slack + j);
     }
     alignas(64) float rho[LineCut::kLine];
     int low[LineCut::kLine];
@@ -407,10 +398,10 @@ struct Vectors {
       for_vectors(low[j], c.top[j], [&](int k) {
         float* stock = c.distance + j * LineCut::kColumns + k;
         const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
-        const Inside inside = inside_of(c, rhos, z, slack[j], down[j], largest, axial);
+        const Inside inside = inside_of(c, rhos, z, slack[j], largest, axial);
         const F most = xsimd::min(inside.most, band);
         const F old = load(stock);
-        const auto may = most > old + inside.passed;
+        const auto may = most > old;
         if (!xsimd::any(may)) return;
         result.tried |= 1u << j;
         // Air that no surface is near only has to be known for air; where no deflection counts none is looked for.

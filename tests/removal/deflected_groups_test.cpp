@@ -77,7 +77,7 @@ Stock box() {
 /// A flat cutter that is displaced along its axis alone, otherwise at each step and each stamp: the floor lies where
 /// the edges of the stamp passed that moved down most there, to what the stock passes of a bottom.
 TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
-  constexpr double kPassed_um = 0.5, kRounding_um = 0.1;
+  constexpr double kRounding_um = 0.1;
   EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::flat), 2.0, 0.1, kPi / 90);
   make_patches(envelope, 0.24);
   std::vector<Stamp> stamps;
@@ -118,7 +118,7 @@ TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
       while (z > -20 && stock.voxel({x, y, z - 1}) > 0) --z;
       const double left_mm = 0.1 * z - static_cast<double>(stock.voxel({x, y, z}));
       // Stamps near whose wall the place lies may have gone deeper.
-      EXPECT_LT(1000 * (left_mm - floor_mm), kPassed_um + kRounding_um) << x << ' ' << y;
+      EXPECT_LT(1000 * (left_mm - floor_mm), kRounding_um) << x << ' ' << y;
       EXPECT_GT(1000 * (left_mm + 1.013), -5.1) << x << ' ' << y;
       deepest_um = std::max(deepest_um, -1000 * (left_mm + 1.013));
       ++seen;

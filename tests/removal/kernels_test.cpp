@@ -61,8 +61,6 @@ bool has_wide_vectors() {
 #endif
 }
 
-const std::vector<float> kNowhere(StampDeflection::kSectors, 0.0f);  ///< bottoms that do not move
-
 }  // namespace
 
 TEST(Kernels, LinesAreCutToTheDistanceOfTheCutter) {
@@ -98,7 +96,6 @@ TEST(Kernels, ADeflectedCutterCutsWhereItIs) {
                               0.02f,
                               0.0f,
                               bend.outward.data(),
-                              kNowhere.data(),
                               StampDeflection::kSectors,
                               0.1f,
                               19.1f};
@@ -127,7 +124,6 @@ TEST(Kernels, WideAndNarrowVectorsCutTheSameBits) {
                             0.03f,
                             0.0f,
                             deflection.outward.data(),
-                            kNowhere.data(),
                             StampDeflection::kSectors,
                             0.1f,
                             19.1f};

@@ -100,7 +100,6 @@ bool carve_deflected(Tile& tile, ColumnCover& cover, const Index3& t, double vox
       static_cast<float>(deflection.largest_mm),
       static_cast<float>(deflection.axial_mm),
       deflection.outward_mm.data(),
-      deflection.downward_mm.data(),
       StampDeflection::kSectors,
       static_cast<float>(envelope.lag_per_mm),
       static_cast<float>(envelope.steps / (2 * kPi))};
