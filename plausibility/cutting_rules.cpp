@@ -92,7 +92,7 @@ bool mills_with(const Evidence& e, std::uint32_t move, const ToolWork& work) {
          moves.state_of(moves.moves[move]).tool == work.number;
 }
 
-/// A chamfer cutter that meets material above its cone, where most of these have no edge.
+/// A chamfer cutter that meets material above its cone, where most such cutters have no edge.
 void look_at_cone(const Evidence& e, const ToolWork& work, Diagnostics& diagnostics) {
   if (work.tool->type != machine::ToolType::chamfer) return;
   const double cone_mm = machine::parameters_of(*work.tool).height_mm;

@@ -74,8 +74,8 @@ Stock box() {
   return {[=](const Vec3& p) { return box_distance_mm(p, lo, hi); }, lo, hi, 0.1, 5};
 }
 
-/// A flat cutter that is displaced along its axis alone, otherwise at each step and each stamp: the floor lies where
-/// the edges of the stamp passed that moved down most there, to what the stock passes of a bottom.
+/// A flat cutter that is displaced along its axis alone, by another amount at each step and each stamp: the floor lies
+/// where the edges of the stamp passed that moved down most there.
 TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
   constexpr double kRounding_um = 0.1;
   EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::flat), 2.0, 0.1, kPi / 90);
