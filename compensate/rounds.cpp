@@ -7,6 +7,7 @@
 
 #include "compensate/judge.h"
 #include "compensate/measure.h"
+#include "compensate/row_form.h"
 #include "compensate/safety.h"
 
 namespace camber::compensate {
@@ -57,23 +58,6 @@ void distribute(const RoundPlaces::OfPoint& place, double value, std::vector<dou
   to[place.lower + 1] += upper * value;
 }
 
-/// Adds to each point what the others of its chain have, less by e for every `about_mm` of path between.
-std::vector<double> spread(const ShiftPath& path, const std::vector<double>& own, double about_mm) {
-  const auto& points = path.points();
-  std::vector<double> out = own;
-  for (const ShiftChain& c : path.chains()) {
-    const std::size_t end = c.from + c.count;
-    const auto fade = [&](std::size_t i) {
-      return std::exp(-(points[i].along_mm - points[i - 1].along_mm) / about_mm);
-    };
-    double carried = 0;
-    for (std::size_t i = c.from + 1; i < end; ++i) out[i] += carried = fade(i) * (carried + own[i - 1]);
-    carried = 0;
-    for (std::size_t i = end - 1; i > c.from; --i) out[i - 1] += carried = fade(i) * (carried + own[i]);
-  }
-  return out;
-}
-
 /// Rounds that may be combined: of the active version, with the feeds of the best round.
 std::vector<std::size_t> alike_rounds(const State& state) {
   std::vector<std::size_t> out;
@@ -99,7 +83,7 @@ ByRound costs(const Task& task, const State& state, const std::vector<std::size_
         if (state.places[at].compensated[i]) distribute(state.places[at].points[i], cost, out[k]);
     }
   }
-  for (auto& of_round : out) of_round = spread(path, of_round, kAbout_mm);
+  for (auto& of_round : out) spread_along(of_round, path, kAbout_mm);
   return out;
 }
 
@@ -115,7 +99,7 @@ ByRound parts(const ShiftPath& path, const ByRound& cost, std::size_t best) {
       if (cost[k][i] < cost[least][i] * (least == best ? kClearly : 1)) least = k;
     out[least][i] = 1;
   }
-  for (auto& of_round : out) of_round = spread(path, of_round, kBlend_mm);
+  for (auto& of_round : out) spread_along(of_round, path, kBlend_mm);
   for (const auto& of_round : out)
     for (std::size_t i = 0; i < count; ++i) sum[i] += of_round[i];
   for (auto& of_round : out)

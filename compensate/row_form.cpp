@@ -19,27 +19,6 @@ constexpr double kMin_mm = 0.005;         // rows narrower than this have no for
 using Terms = Eigen::Matrix<double, kTerms, 1>;
 using Square = Eigen::Matrix<double, kTerms, kTerms>;
 
-/// Adds to each point what the others of its chain have, less by e for every kFormAlong_mm of path between.
-template <class Sums>
-void spread_along(std::vector<Sums>& sums, const ShiftPath& path) {
-  const auto& points = path.points();
-  const std::vector<Sums> own = sums;
-  for (const ShiftChain& c : path.chains()) {
-    const auto pass = [&](std::size_t from, std::size_t count, int step) {
-      Sums carried = own[from];
-      for (std::size_t k = 1, i = from + static_cast<std::size_t>(step); k < count; ++k) {
-        const std::size_t last = i - static_cast<std::size_t>(step);
-        carried = carried * std::exp(-std::abs(points[i].along_mm - points[last].along_mm) / kFormAlong_mm);
-        sums[i] = sums[i] + carried;
-        carried = carried + own[i];
-        i += static_cast<std::size_t>(step);
-      }
-    };
-    pass(c.from, c.count, 1);
-    pass(c.from + c.count - 1, c.count, -1);
-  }
-}
-
 /// Sum of the normals about a point of the path, each by its area.
 struct Facing {
   Vec3 normal = Vec3::Zero();
@@ -69,7 +48,7 @@ std::vector<Facing> facing(const ShiftPath& path, std::span<const Observation> o
     distribute(o.place, [&](std::size_t i, double fraction) {
       out[i] = out[i] + Facing{o.normal, 1} * (fraction * o.area_mm2);
     });
-  spread_along(out, path);
+  spread_along(out, path, kFormAlong_mm);
   return out;
 }
 
@@ -115,7 +94,7 @@ std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observati
       moments[at].right += a * left_mm[i] * t;
     });
   }
-  spread_along(moments, path);
+  spread_along(moments, path, kFormAlong_mm);
   std::vector<Terms> form(moments.size(), Terms::Zero());
   for (std::size_t i = 0; i < form.size(); ++i) {
     Square& m = moments[i].square;

@@ -1,6 +1,7 @@
 #pragma once
 // Form across the rows: the part of the error that keeps its form along a row, as the bow that a ball or a helix
 // leaves.
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -26,5 +27,26 @@ inline constexpr double kFormAlong_mm = 1.5;
 /// faces more than one way (a wall and its floor, a corner) the form is zero. Returns one value per observation.
 std::vector<double> row_form_mm(const ShiftPath& path, std::span<const Observation> observations,
                                 const std::vector<double>& left_mm, double smoothing_mm);
+
+/// Adds to each point what the others of its chain have, less by e for every `about_mm` of path between.
+template <class Sums>
+void spread_along(std::vector<Sums>& sums, const ShiftPath& path, double about_mm) {
+  const auto& points = path.points();
+  const std::vector<Sums> own = sums;
+  for (const ShiftChain& c : path.chains()) {
+    const auto pass = [&](std::size_t from, std::size_t count, int step) {
+      Sums carried = own[from];
+      for (std::size_t k = 1, i = from + static_cast<std::size_t>(step); k < count; ++k) {
+        const std::size_t last = i - static_cast<std::size_t>(step);
+        carried = carried * std::exp(-std::abs(points[i].along_mm - points[last].along_mm) / about_mm);
+        sums[i] = sums[i] + carried;
+        carried = carried + own[i];
+        i += static_cast<std::size_t>(step);
+      }
+    };
+    pass(c.from, c.count, 1);
+    pass(c.from + c.count - 1, c.count, -1);
+  }
+}
 
 }  // namespace camber::compensate
