@@ -339,6 +339,25 @@ struct Vectors {
     return {-place.distance, F(outwards) * of_outwards - place.distance + axial, radial};
   }
 
+  /// How far a deflection moves the bottom downwards in each column of a line, at most. Only the rotation step of an
+  /// edge in that direction counts, and those beside it; near the axis a deflection turns a place into another
+  /// direction.
+  static F downwards(const LineDeflection& deflection, float largest, const F& dx, const F& dy) {
+    const DeflectionRow& rows = deflection.deflection;
+    const I all(rows.steps), axial_at(rows.nodes * rows.steps);
+    const F steps(static_cast<float>(rows.steps));
+    F step = DeflectionLanes<A>::atan2(dy, dx) * F(deflection.steps_per_rad);
+    step -= steps * xsimd::floor(step / steps);
+    I own = to_int(step);
+    own = xsimd::select((own >= all) | (own < I(0)), I(0), own);
+    const I behind = xsimd::select(own == I(0), all - I(1), own - I(1)),
+            ahead = xsimd::select(own + I(1) == all, I(0), own + I(1));
+    const Deflection a = at(rows.now, axial_at, behind), b = at(rows.now, axial_at, ahead);
+    const F most = -xsimd::min(xsimd::min(a.x, a.y), xsimd::min(b.x, b.y));
+    const float turned = largest * deflection.steps_per_rad;  // a step, seen from there
+    return xsimd::select(dx * dx + dy * dy > F(turned * turned), most, F(deflection.axial_mm));
+  }
+
   /// The deflections at the feet of the columns of a line: good guesses for all of a column, however wide the vectors
   /// are.
   struct Feet {
@@ -358,13 +377,15 @@ struct Vectors {
     }
   };
 
+  static constexpr float kPassed_mm = 5e-6f;  ///< what a bottom need not go deeper; the field settles within more
+
   static LineResult cut_line_deflected(const LineCut& c, const LineDeflection& deflection) {
     LineResult result;
     const float per_voxel = 1 / c.voxel, dx2 = c.dx * c.dx;
     const F steps = ramp() * F(c.voxel), band(c.band), dx(c.dx);
     // How far a deflection moves the envelope outwards in each column, at most; near the axis a deflection turns a
     // place into another direction.
-    alignas(64) float slack[LineCut::kLine];
+    alignas(64) float slack[LineCut::kLine], down[LineCut::kLine];
     const F far_out(kFar * c.voxel + deflection.largest_mm);
     const F largest(deflection.largest_mm), axial(deflection.axial_mm),
         axis_zone2(25 * deflection.largest_mm * deflection.largest_mm);
@@ -375,6 +396,7 @@ struct Vectors {
       const I sector = xsimd::min(xsimd::max(to_int(at), I(0)), I(deflection.sectors - 1));
       const F outward = xsimd::min(Table<A>::gather(deflection.outward_mm, sector), largest);
       xsimd::select(F(dx2) + dy * dy > axis_zone2, outward, largest).store_aligned(slack + j);
+      if (deflection.deflection.axial) downwards(deflection, deflection.largest_mm, dx, dy).store_aligned(down + j);
     }
     alignas(64) float rho[LineCut::kLine];
     int low[LineCut::kLine];
@@ -399,9 +421,10 @@ struct Vectors {
         float* stock = c.distance + j * LineCut::kColumns + k;
         const F z = F(c.z + static_cast<float>(k) * c.voxel) + steps;
         const Inside inside = inside_of(c, rhos, z, slack[j], largest, axial);
-        const F most = xsimd::min(inside.most, band);
         const F old = load(stock);
-        const auto may = most > old;
+        auto may = xsimd::min(inside.most, band) > old;
+        if (deflection.deflection.axial)
+          may = may & !((inside.radial <= F(0.0f)) & (inside.straight + F(down[j] - kPassed_mm) <= old));
         if (!xsimd::any(may)) return;
         result.tried |= 1u << j;
         // Air that no surface is near only has to be known for air; where no deflection counts none is looked for.
