@@ -49,6 +49,11 @@ void add_motion(const nc::Interpretation& moves, const nc::Move& m, ToolWork& wo
   work.cutting_speed_m_per_min.add(kPi * work.tool->diameter_mm * s.spindle_speed_rpm / 1000, length);
 }
 
+bool goes_straight_down(const nc::Move& m) {
+  return m.kind == nc::MoveKind::linear && m.end_mm.z() < m.start_mm.z() &&
+         (m.end_mm - m.start_mm).head<2>().norm() < 1e-6;
+}
+
 void add_cut(const checks::MoveCut& m, double power_W, std::uint32_t move, ToolWork& work) {
   if (m.deepest_mm > work.cut.deepest_mm) {
     work.cut.deepest_mm = m.deepest_mm;
@@ -93,6 +98,7 @@ std::vector<ToolWork> tool_works(const Evidence& e) {
       const double seconds = m.feed_mm_per_s > 0 ? cut.cutting_mm / m.feed_mm_per_s : 0;
       const double power = seconds > 0 ? e.specific_force_MPa * cut.volume_mm3 / seconds / 1000 : 0;  // N mm/s to W
       add_cut(cut, power, i, work);
+      if (goes_straight_down(m) && power > work.plunge_W) work.plunge_W = power, work.plunge_move = i;
     }
   }
   return out;

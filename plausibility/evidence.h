@@ -49,8 +49,10 @@ struct ToolWork {
   Spread feed_per_tooth_mm, cutting_speed_m_per_min, spindle_rpm, feed_mm_per_min;  ///< in milling, by length
   checks::MoveCut cut;  ///< sum of its milling moves, where there is a survey
   std::uint32_t deepest_move = 0;
-  Spread depth_mm;  ///< height of what each move removes, by length in material
-  Spread power_W;   ///< for the chips alone, by length in material
+  Spread depth_mm;      ///< height of what each move removes, by length in material
+  Spread power_W;       ///< for the chips alone, by length in material
+  double plunge_W = 0;  ///< greatest of moves straight down
+  std::uint32_t plunge_move = 0;
 };
 
 struct Evidence {

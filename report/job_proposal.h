@@ -68,9 +68,9 @@ struct StockProposal {
 ///
 /// Its top is Z0 where the program cuts below Z0 only, else 1 mm above the highest pass (feed moves as high as rapids
 /// travel are taken for moves in air); lower where a rapid runs lower over material that nothing has cut by then.
-/// Where a rapid goes down beside the part, that side is taken back: of all boxes within through which no rapid runs,
-/// the one of which the program removes most. Rapids are compared with a height map of 240 by 240 cells at most; tools
-/// without a known diameter count as lines. Nothing where no move cuts.
+/// Where a rapid, or a feed of a cutter of 24 mm or more, goes straight down beside the part, that side is taken back:
+/// of all boxes within through which no rapid runs, the one of which the program removes most. Rapids are compared with
+/// a height map of 240 by 240 cells at most; tools without a known diameter count as lines. Nothing where no move cuts.
 std::optional<StockProposal> propose_stock(const nc::Program& text, const nc::Interpretation& moves,
                                            const ToolsByNumber& tools);
 

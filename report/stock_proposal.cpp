@@ -365,15 +365,21 @@ class Proposer {
       for (int i = is_rapid(m) && !known.start ? steps : 0; i <= steps; ++i) {
         const Vec3 tip = nc::point_at(moves_, m, static_cast<double>(i) / steps);
         if (is_rapid(m) && !over_box(tip, p.radius_mm)) continue;
-        if (is_rapid(m)) {
-          map.pass(tip, p);
-          continue;
-        }
+        if (is_rapid(m) || lands_beside(m, p)) map.pass(tip, p);
+        if (is_rapid(m)) continue;
         const double step_mm = nc::length_mm(moves_, m) / steps;
         const MetMaterial met = map.cut(tip, p, top_mm, step_mm);
         if (is_lateral(m)) depths_.add(tools_[moves_.state_of(m).tool], met, step_mm);
       }
     }
+  }
+
+  /// A feed straight down with a milling cutter so large that its edges do not reach the axis: as a rapid, it goes down
+  /// where there is no material.
+  bool lands_beside(const nc::Move& m, const Profile& p) const {
+    constexpr double kLarge_mm = 12;
+    return p.radius_mm >= kLarge_mm && p.slope == 0 && p.corner_mm < p.radius_mm && !is_lateral(m) &&
+           m.end_mm.z() < m.start_mm.z();
   }
 
   bool over_box(const Vec3& tip, double radius) const {

@@ -1,5 +1,6 @@
 // camber init: a job file from a program and tool tables.
 #include <filesystem>
+#include <regex>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -88,6 +89,24 @@ TEST(Init, ProposesABlankThatNoRapidRunsThrough) {
   const auto check = run_camber(folder, "check wall.nc --job job.toml");
   EXPECT_EQ(check.status, 0) << check.err;
   EXPECT_NE(check.out.find("\nno warnings\n"), std::string::npos) << check.out << check.err;
+}
+
+TEST(Init, ProposesABlankBesideWhichAFaceMillGoesDown) {
+  const TempFolder folder;
+  folder.write(
+      "faced.nc",
+      "G21 G90 G17 G54\nT1 M6 (50. FACE MILL)\nS3000 M3\nG0 X60. Y0. Z5.\nG1 Z-1. F4000\nX-30.\nG0 Z20.\nM30\n");
+  folder.write("m.toml", "[axis.x]\n[axis.y]\n[axis.z]\n");
+  ASSERT_EQ(run_camber(folder, "-q init faced.nc --machine m.toml --material 6061 -o job.toml").status, 0);
+  // The axis goes down at X60; its edges reach X35.
+  const std::string job = tests::file_text(folder / "job.toml");
+  EXPECT_NE(job.find("\nbox_mm = [[-57.0, -27.0, -2.0], [34."), std::string::npos) << job;
+  const auto check = run_camber(folder, "check faced.nc --job job.toml");
+  EXPECT_NE(check.out.find("\nno warnings\n"), std::string::npos) << check.out << check.err;
+  folder.write("large.toml", std::regex_replace(job, std::regex("\\[34\\.[0-9]*,"), "[90.0,"));
+  const auto large = run_camber(folder, "check faced.nc --job large.toml");
+  EXPECT_NE(large.err.find("faced.nc:5:1: warning: T1 goes straight down into the stock"), std::string::npos)
+      << large.err;
 }
 
 TEST(Init, MakesAJobThatRunsAsItStands) {

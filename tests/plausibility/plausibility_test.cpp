@@ -277,6 +277,11 @@ TEST(Plausibility, CutsThatNeitherSpindleNorToolStands) {
       "p.nc:9: error: T1 would bend by 7.5 mm under the mean force of its chips, 2.66e+03 N, and break; a cut that "
       "a cutter of 8 mm with overhang_mm = 100 stands was expected [cut-power]\n");
   EXPECT_EQ(of_check(said({.job = kPocket, .program = pocket_at(-3, -6, "F9000")}), "cut-power"), "");
+  // A disc of 8 mm goes down at 40 m/min: 33.5 cm3/s are 62 kW; the survey's cells leave 6 % of it out.
+  EXPECT_EQ(
+      of_check(said({.job = kPocket, .program = replaced(pocket_rows(), "Z-3 F200", "Z-3 F40000")}), "cut-power"),
+      "p.nc:7: warning: T1 goes straight down into the stock, which needs 58.8 kW for its chips; a place beside the "
+      "stock, or that is cut already, was expected (is the stock too large?) [cut-power]\n");
 }
 
 TEST(Plausibility, StockTooHigh) {
