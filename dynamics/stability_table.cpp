@@ -1,9 +1,12 @@
 #include "dynamics/stability_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include <tbb/parallel_for.h>
 
 #include "base/cancel.h"
 #include "dynamics/semi_discretisation.h"
@@ -162,20 +165,27 @@ CriticalDepth StabilityTable::at(const ArcCut& c) {
 std::vector<double> StabilityTable::drawn_depths(const ArcCut& c) const {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  Cut cut = cut_with(c);
-  std::vector<double> depths;
-  for (int i = 0; i < kDraws; ++i) {
+  struct Factors {
+    double frequency, damping, stiffness, process_damping;
+  };
+  // A tool that is alike in x and y stays so: its modes come in pairs.
+  std::array<Factors, kDraws> factors;
+  const auto factor = [&](double error) { return std::exp(error * normal(random)); };
+  for (Factors& f : factors)
+    f = {factor(errors_.frequency), factor(errors_.damping), factor(errors_.stiffness), factor(kProcessDampingError)};
+  std::vector<double> depths(kDraws);
+  tbb::parallel_for(std::size_t{0}, depths.size(), [&](std::size_t i) {
     cancellation_point();
-    // A tool that is alike in x and y stays so: its modes come in pairs.
-    const double f = std::exp(errors_.frequency * normal(random)), z = std::exp(errors_.damping * normal(random)),
-                 k = std::exp(errors_.stiffness * normal(random));
+    const Factors& f = factors[i];
     std::vector<Mode> drawn = modes_;
-    for (Mode& m : drawn) m.frequency_hz *= f, m.damping_ratio *= z, m.stiffness_N_per_mm *= k;
+    for (Mode& m : drawn)
+      m.frequency_hz *= f.frequency, m.damping_ratio *= f.damping, m.stiffness_N_per_mm *= f.stiffness;
+    Cut cut = cut_with(c);
     cut.process_damping_N_per_mm = 0;
     const CriticalDepth undamped = ZeroOrderLobes(drawn, cut).at(speed_rpm_);
-    cut.process_damping_N_per_mm = kProcessDamping_mm * c.kt_MPa * std::exp(kProcessDampingError * normal(random));
-    depths.push_back(depth_with_process_damping(undamped, drawn, cut, speed_rpm_));
-  }
+    cut.process_damping_N_per_mm = kProcessDamping_mm * c.kt_MPa * f.process_damping;
+    depths[i] = depth_with_process_damping(undamped, drawn, cut, speed_rpm_);
+  });
   std::ranges::sort(depths);
   return depths;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <tbb/parallel_for.h>
+
 #include "base/cancel.h"
 #include "deflection/beam.h"
 #include "motion/path_stretch.h"
@@ -57,10 +59,11 @@ void watch_range(const CutTool& tool, const CutStretch& stretch, CutResult& resu
   const std::span<const Stamp> stamps = stretch.stamps();
   const DeflectionTable& deflections = stretch.deflections;
   std::vector<StampLoad>& loads = stretch.loads;
+  tbb::parallel_for(std::size_t{0}, stamps.size(), [&](std::size_t k) {
+    loads[k].deflection_max_mm = tip_deflection_mm(deflections, deflections.row(static_cast<std::ptrdiff_t>(k)));
+  });
   for (std::size_t k = 0; k < stamps.size(); ++k) {
-    const double deflection = tip_deflection_mm(deflections, deflections.row(static_cast<std::ptrdiff_t>(k))),
-                 limit = deflection_limit_mm(tool, stamps[k]);
-    loads[k].deflection_max_mm = deflection;
+    const double deflection = loads[k].deflection_max_mm, limit = deflection_limit_mm(tool, stamps[k]);
     result.deflection_max_mm = std::max(result.deflection_max_mm, deflection);
     if (deflection <= limit) continue;
     result.deflection_limit_mm = result.beyond_stamps.empty() ? limit : std::min(result.deflection_limit_mm, limit);
