@@ -161,13 +161,6 @@ void look_at_power(const Evidence& e, Diagnostics& diagnostics) {
                                             "(depth of the cut, [material], F?)",
                                             work.number, power / 1000, motor / 1000),
                                 "cut-power"));
-    else if (work.plunge_W > motor)
-      diagnostics.add(
-          e.at_move(Severity::warning, work.plunge_move,
-                    fmt::format("T{} goes straight down into the stock, which needs {:.3g} kW for its chips; a place "
-                                "beside the stock, or that is cut already, was expected (is the stock too large?)",
-                                work.number, work.plunge_W / 1000),
-                    "cut-power"));
     else if (bend > kBroken * work.tool->diameter_mm && checks::slenderness(*work.tool) <= checks::kMaxSlenderness)
       diagnostics.add(e.at_move(
           e.error_of(work.number, {"type", "diameter_mm", "overhang_mm"}, true), work.deepest_move,
@@ -176,6 +169,13 @@ void look_at_power(const Evidence& e, Diagnostics& diagnostics) {
               "cutter of {:g} mm with overhang_mm = {:g} stands was expected",
               work.number, bend, force, work.tool->diameter_mm, work.tool->overhang_mm),
           "cut-power"));
+    else if (work.plunge_W > motor)
+      diagnostics.add(
+          e.at_move(Severity::warning, work.plunge_move,
+                    fmt::format("T{} goes straight down into the stock, which needs {:.3g} kW for its chips; a place "
+                                "beside the stock, or that is cut already, was expected (is the stock too large?)",
+                                work.number, work.plunge_W / 1000),
+                    "cut-power"));
   }
 }
 

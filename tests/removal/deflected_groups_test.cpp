@@ -74,9 +74,9 @@ Stock box() {
   return {[=](const Vec3& p) { return box_distance_mm(p, lo, hi); }, lo, hi, 0.1, 5};
 }
 
-/// A flat cutter that is displaced along its axis alone, by another amount at each step and each stamp: the floor lies
-/// where the edges of the stamp passed that moved down most there.
-TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
+/// A flat cutter that is displaced along its axis, by another amount at each step and each stamp, and leans: the floor
+/// lies where the edges of the stamp passed that moved down most there.
+void expect_floor_below_leaning_edges(const Vec3& lean_mm) {
   constexpr double kRounding_um = 0.1;
   EnvelopeGrid envelope = make_envelope(tool_of(machine::ToolType::flat), 2.0, 0.1, kPi / 90);
   make_patches(envelope, 0.24);
@@ -91,6 +91,8 @@ TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
   DeflectionTable table(stamps.size(), envelope.steps_per_pitch, {0.0, 2.0}, true);
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     const std::span<float> row(table.row(static_cast<std::ptrdiff_t>(k)), table.row_size());
+    for (std::size_t i = 0; i < table.lateral_size(); ++i)
+      row[i] = static_cast<float>(lean_mm[static_cast<int>(i % 2)]);
     for (int m = 0; m < table.steps; ++m)
       AxialRow(row.subspan(table.lateral_size()))
           .set(static_cast<std::size_t>(m),
@@ -109,7 +111,7 @@ TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
       double floor_mm = 0;
       for (std::size_t k = 0; k < stamps.size(); ++k) {
         const Vec3& tip = stamps[k].pose.tip_mm;
-        const double dx = at_x - tip.x(), dy = at_y - tip.y(), rho = std::hypot(dx, dy);
+        const double dx = at_x - tip.x() - lean_mm.x(), dy = at_y - tip.y() - lean_mm.y(), rho = std::hypot(dx, dy);
         if (rho > 1.4 || rho < 1e-6) continue;  // nearer to the wall it is the wall that a voxel tells of
         const double step = table.step_at(std::atan2(dy, dx), 0, envelope.lag_per_mm, envelope.flutes);
         floor_mm = std::min(floor_mm, tip.z() + table.at(table.row(static_cast<std::ptrdiff_t>(k)), 0, step).z());
@@ -126,6 +128,11 @@ TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) {
   EXPECT_EQ(seen, 25 * 21);
   EXPECT_GT(deepest_um, 4.4);
 }
+
+TEST(FlatBottoms, AreAsDeepAsTheEdgesThatMoveDownMost) { expect_floor_below_leaning_edges(Vec3::Zero()); }
+
+/// Near the axis the edge that passes a place is that of another direction.
+TEST(FlatBottoms, AreAsDeepWhereTheToolLeans) { expect_floor_below_leaning_edges({0.2, 0.1, 0}); }
 
 class DeflectedGroups : public ::testing::TestWithParam<machine::ToolType> {
  protected:
